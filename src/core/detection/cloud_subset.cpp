@@ -22,12 +22,33 @@ double maxPoints(const PointsRef& points, const DetectionOptions& options) {
   return kDetection.points.max_points * finer * finer;
 }
 
+/// Slope of the logarithm of the density.
+/// \param at positions at which the density is measured.
+Eigen::Vector3d densitySlope(const NormalizedCloud& cloud, const Points& at) {
+  std::vector<int> unused;
+  std::vector<float> sq_distances, to_neighbor;
+  cloud.search->search(at, kDetection.points.max_counted, unused, sq_distances);
+  for (std::size_t i = kDetection.points.neighbors; i < sq_distances.size(); i += kDetection.points.max_counted)
+    to_neighbor.push_back(sq_distances[i]);
+  const float sq_radius = median(std::move(to_neighbor));
+  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d pull = Eigen::Vector4d::Zero();
+  for (Eigen::Index i = 0; i < at.cols(); ++i) {
+    const auto first = sq_distances.begin() + i * kDetection.points.max_counted;
+    const auto count = std::upper_bound(first, first + kDetection.points.max_counted, sq_radius) - first;
+    const Eigen::Vector4d position = at.col(i).cast<double>().homogeneous();
+    squares += position * position.transpose();
+    pull += std::log(static_cast<double>(count)) * position;
+  }
+  squares.diagonal().array() += 1e-9 * squares.trace();  // the points of a plane have no slope along its normal
+  return solveSymmetric(squares, pull).head<3>();
+}
+
 }  // namespace
 
 std::optional<std::vector<int>> drawSubset(const PointsRef& points, const DetectionOptions& options) {
-  if (static_cast<double>(points.cols()) <= kDetection.points.max_points) return std::nullopt;
   const double max_points = maxPoints(points, options);
-  if (!(static_cast<double>(points.cols()) > max_points)) return std::nullopt;
+  if (static_cast<double>(points.cols()) <= max_points) return std::nullopt;
   const DistinctPoints distinct(points);
   if (static_cast<double>(distinct.points.cols()) <= max_points) return std::nullopt;
   std::vector<int> kept = spreadSubset(distinct.points, static_cast<std::size_t>(max_points), options.seed);
@@ -48,29 +69,11 @@ void spreadSupport(Detection& detection, const std::vector<int>& representative_
 
 std::vector<int> thinToEvenDensity(const NormalizedCloud& cloud, std::uint64_t seed) {
   const Eigen::Index size = cloud.points.cols();
-  const std::vector<int> samples = drawSamples(size, kDetection.points.density_samples, seed);
   if (size <= kDetection.points.max_counted) return allIndices(size);
-  std::vector<int> unused;
-  std::vector<float> sq_distances;
-  const Points at = pointsAt(cloud.points, samples);
-  cloud.search->search(at, kDetection.points.max_counted, unused, sq_distances);
-  std::vector<float> to_neighbor(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    to_neighbor[i] = sq_distances[i * kDetection.points.max_counted + kDetection.points.neighbors];
-  const float sq_radius = median(to_neighbor);
-  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d pull = Eigen::Vector4d::Zero();
-  for (Eigen::Index i = 0; i < at.cols(); ++i) {
-    const auto first = sq_distances.begin() + i * kDetection.points.max_counted;
-    const auto count = std::upper_bound(first, first + kDetection.points.max_counted, sq_radius) - first;
-    const Eigen::Vector4d position = at.col(i).cast<double>().homogeneous();
-    squares += position * position.transpose();
-    pull += std::log(static_cast<double>(count)) * position;
-  }
-  squares.diagonal().array() += 1e-9 * squares.trace();  // the points of a plane have no slope along its normal
-  const Eigen::Vector3d slope = solveSymmetric(squares, pull).head<3>();
-  std::vector<double> along(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) along[i] = slope.dot(at.col(i).cast<double>());
+  const Points at = pointsAt(cloud.points, drawSamples(size, kDetection.points.density_samples, seed));
+  const Eigen::Vector3d slope = densitySlope(cloud, at);
+  std::vector<double> along;
+  for (Eigen::Index i = 0; i < at.cols(); ++i) along.push_back(slope.dot(at.col(i).cast<double>()));
   const double low = quantile(along, kDetection.points.trimmed),
                high = quantile(along, 1.0 - kDetection.points.trimmed);
   const double strength = std::clamp(

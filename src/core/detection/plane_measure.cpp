@@ -66,8 +66,7 @@ CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, Clo
       still_((kind == CloudKind::Volume ? kDetection.measure.noisy_thinness : 1.0) * lengths.tolerance),
       thinness_(thinnessOf(points, axes, still_, lineTolerance(kind, lengths))),
       is_one_side_(seen && seen->supports().empty() && thinness_ == Thinness::Sheet &&
-                   movedShare({axes.axes.col(2), axes.axes.col(2).dot(axes.center)}, points, 2.0 * still_) <
-                       kDetection.decide.nothing_missing) {}
+                   movedShare(principalPlanes(axes)[2], points, 2.0 * still_) < kDetection.decide.nothing_missing) {}
 
 bool CloudLimits::leavesMostInPlace(const ReflectionPlane& plane, const PointsRef& points) const {
   return thinness_ == Thinness::Sheet && movedShare(plane, points, still_) < 1.0 - kDetection.decide.max_unmoved_share;
@@ -178,13 +177,6 @@ std::vector<float> PlaneMeasure::unknownMatches(const Landing& landing, const st
   return unknown;
 }
 
-Eigen::Matrix3d PlaneMeasure::stiffnessOf(const ReflectionPlane& plane, const Landing& landing,
-                                          const std::vector<char>& matched) const {
-  std::vector<int> matches = landing.closest;
-  for (int& match : matches) match = std::max(0, match);
-  return motionStiffness(landing.images, pointsAt(cloud_.geometry.normals, matches), matched, plane);
-}
-
 MeasuredPlane PlaneMeasure::measureMatched(const ReflectionPlane& plane, const std::vector<int>& samples,
                                            const IspStep& step, double rim) const {
   const Landing landing = landingOf(plane, samples, step.closest);
@@ -206,7 +198,9 @@ MeasuredPlane PlaneMeasure::measureMatched(const ReflectionPlane& plane, const s
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   std::vector<float> unknown(size, 0.0f);
   if (cloud_.isScan() || (cloud_.isSurface() && within[0] < kDetection.measure.surely_whole)) {
-    stiffness = stiffnessOf(plane, landing, matched);
+    std::vector<int> matches = landing.closest;
+    for (int& match : matches) match = std::max(0, match);
+    stiffness = motionStiffness(landing.images, pointsAt(cloud_.geometry.normals, matches), matched, plane);
     unknown = unknownMatches(landing, matched, offsetStiffness(stiffness), rim);
   }
   std::vector<float> informative;  // distances of the informative samples
@@ -270,12 +264,13 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
   return deviationOf(std::move(informative));
 }
 
-PlaneMeasure::ScreenedShare PlaneMeasure::screenedShare(const Candidate& candidate) const {
+double PlaneMeasure::greatestShare(const Candidate& candidate) const {
   const std::vector<int> samples =
       drawSamples(cloud_.points.cols(), kDetection.measure.screening_samples, options_.seed);
   const Landing landing = landingOf(candidate.plane, samples, fit_.matches(candidate.plane, samples).closest);
   const double share = std::min(1.0, shareWithin(landing.distances, tolerance_) / own_shares_[0]);
-  return {share, std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()))};
+  return share +
+         kDetection.decide.screening_errors * std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()));
 }
 
 const SurfaceEnds& PlaneMeasure::ends() const {

@@ -97,13 +97,9 @@ public:
   /// Evidence of a whole cloud for one plane; fields beyond support, conflict and D keep their defaults.
   PlaneEvidence evidenceOf(double support, double conflict, double score) const;
 
-  /// Share of the surface that a plane maps to within the tolerance, estimated from some points, and its standard
-  /// error.
-  struct ScreenedShare {
-    double share, error;
-  };
+  /// The greatest share of the surface that a plane may map to within the tolerance, as far as some points show.
   /// \param candidate after the second stage of refinement or later.
-  ScreenedShare screenedShare(const Candidate& candidate) const;
+  double greatestShare(const Candidate& candidate) const;
 
   /// SymmetryPlane::deviation of a plane that maps many points far from the surface, normalized frame.
   double deviation(const ReflectionPlane& plane) const;
@@ -117,9 +113,6 @@ private:
   /// For each sample without a match, the certainty that its counterpart lies in unknown space, in [0, 1].
   std::vector<float> unknownMatches(const Landing& landing, const std::vector<char>& matched, double offset_stiffness,
                                     double rim) const;
-  /// How strongly the matches constrain a plane, see motionStiffness().
-  Eigen::Matrix3d stiffnessOf(const ReflectionPlane& plane, const Landing& landing,
-                              const std::vector<char>& matched) const;
   /// \param rim as above.
   MeasuredPlane measureMatched(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
                                double rim) const;

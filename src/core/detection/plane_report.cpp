@@ -49,8 +49,7 @@ std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> plane
 
 /// \return the plane of a cloud that is a sheet at the tolerance, input frame; else empty.
 std::optional<ReflectionPlane> flatPlane(const PlaneSearch& search) {
-  const PrincipalAxes& axes = search.cloud.principal_axes;
-  const ReflectionPlane plane(axes.axes.col(2), axes.axes.col(2).dot(axes.center));
+  const ReflectionPlane plane = principalPlanes(search.cloud.principal_axes)[2];
   if (!search.measure.limits().leavesMostInPlace(plane, search.cloud.points)) return std::nullopt;
   return search.cloud.toInput(plane);
 }

@@ -26,8 +26,7 @@ MeasuredPlane PlaneSearch::decide(MeasuredPlane measured, const ReflectionPlane&
 
 bool PlaneSearch::isHopeless(const Candidate& candidate) const {
   if (!cloud.isSurface() || candidate.merit >= kDetection.stages.symmetric_merit) return false;
-  const PlaneMeasure::ScreenedShare quick = measure.screenedShare(candidate);
-  return quick.share + kDetection.decide.screening_errors * quick.error < kDetection.decide.hopeful_share;
+  return measure.greatestShare(candidate) < kDetection.decide.hopeful_share;
 }
 
 std::vector<MeasuredPlane> PlaneSearch::judge(const std::vector<Candidate>& candidates) const {

@@ -26,20 +26,16 @@ double angleAbout(const Line3d& line, const ReflectionPlane& plane) {
   return angle < 0.0 ? angle + kPi : angle;
 }
 
-std::vector<ReflectionPlane> planesContaining(const Line3d& line, const std::vector<ReflectionPlane>& planes) {
-  std::vector<ReflectionPlane> through;
-  std::copy_if(planes.begin(), planes.end(), std::back_inserter(through),
-               [&](const ReflectionPlane& plane) { return contains(plane, line); });
-  return through;
-}
-
 /// For each common line of two of the first \p num_first planes, all planes that contain it, including these two.
 std::vector<std::vector<ReflectionPlane>> bundlesOf(const std::vector<ReflectionPlane>& planes, std::size_t num_first) {
   std::vector<std::vector<ReflectionPlane>> bundles;
   for (std::size_t i = 0; i < std::min(planes.size(), num_first); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (planes[i].angleTo(planes[j]) >= kDetection.families.min_pair_angle)
-        bundles.push_back(planesContaining(commonLine({planes[i], planes[j]}), planes));
+    for (std::size_t j = 0; j < i; ++j) {
+      if (planes[i].angleTo(planes[j]) < kDetection.families.min_pair_angle) continue;
+      const Line3d line = commonLine({planes[i], planes[j]});
+      std::copy_if(planes.begin(), planes.end(), std::back_inserter(bundles.emplace_back()),
+                   [&](const ReflectionPlane& plane) { return contains(plane, line); });
+    }
   return bundles;
 }
 

@@ -20,11 +20,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The least signed distance of the points from a support.
-double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
-  return (support.head<3>().transpose().cast<float>() * points).minCoeff() + support[3];
-}
-
 struct UprightBoxRules {
   int num_angles = 180;   // angles that are tried, in steps of half a degree within a quarter turn
   double trimmed = 0.01;  // share of the points beyond each side of the box
@@ -45,10 +40,6 @@ struct UprightBoxRules {
 };
 constexpr UprightBoxRules kBox;
 
-double distanceFrom(const std::array<double, 2>& sides, double value) {
-  return std::min(std::abs(value - sides[0]), std::abs(value - sides[1]));
-}
-
 /// A rectangle around points seen from above, and how far they are off its sides.
 struct Rectangle {
   std::array<Eigen::Vector3d, 2> axes;  // unit, horizontal
@@ -66,7 +57,7 @@ Rectangle rectangleAt(const PointsRef& points, const Eigen::Vector3d& u, const E
     rectangle.sides[k] = {low, high};
     for (Eigen::Index i = 0; i < along.size(); ++i) {
       double& distance = rectangle.distances[i];
-      const double off = distanceFrom(rectangle.sides[k], along[i]);
+      const double position = along[i], off = std::min(std::abs(position - low), std::abs(position - high));
       distance = k == 0 ? off : std::min(distance, off);
     }
   }
@@ -176,8 +167,9 @@ std::vector<Meets> meetingsAt(const Points& reflected, const PointsRef& points, 
 }  // namespace
 
 std::vector<Eigen::Vector3d> supportNormals(const PointsRef& points, const Visibility& seen) {
-  std::vector<double> heights;
-  for (const Eigen::Vector4d& support : seen.supports()) heights.push_back(heightOf(points, support));
+  std::vector<double> heights;  // the least signed distance of the points from each support
+  for (const Eigen::Vector4d& support : seen.supports())
+    heights.push_back((support.head<3>().transpose().cast<float>() * points).minCoeff() + support[3]);
   if (heights.empty()) return {};
   const double reach = *std::min_element(heights.begin(), heights.end()) +
                        kDetection.decide.touching * 2.0 * boundingBall(points).radius;

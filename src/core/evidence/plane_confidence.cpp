@@ -66,10 +66,6 @@ double byLostOverlap(const PlaneEvidence& evidence) {
   return std::log(std::max(0.0, 1.0 - evidence.support) / kEvidenceUnits.lost_overlap + 1.0);
 }
 
-double noiseOf(const PlaneEvidence& evidence) {
-  return evidence.roughness * evidence.spacing;
-}
-
 }  // namespace
 
 double seenSupport(const PlaneEvidence& evidence) {
@@ -98,8 +94,8 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence) {
 }
 
 double shareUnit(const PlaneEvidence& evidence) {
-  return kEvidenceUnits.off + kEvidenceUnits.off_per_spacing * coarseness(evidence) + noiseOf(evidence) +
-         kEvidence.unknown_share * evidence.unknown;
+  return kEvidenceUnits.off + kEvidenceUnits.off_per_spacing * coarseness(evidence) +
+         evidence.roughness * evidence.spacing + kEvidence.unknown_share * evidence.unknown;
 }
 
 ShareInterval shareInterval(const PlaneEvidence& evidence) {

@@ -10,7 +10,6 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/frame/canonical_frame.h"
-#include "core/frame/frame_fit.h"
 #include "core/geometry/directions.h"
 
 namespace pcl_symmetry {
@@ -213,10 +212,6 @@ std::vector<double> frameProbabilities(const std::vector<FrameChoice>& choices, 
   }
   for (double& p : probabilities) p /= sum;
   return probabilities;
-}
-
-FrameTerms frameWeights(bool scanned) {
-  return Eigen::Map<const FrameTerms>((scanned ? kFrameFit.scan : kFrameFit.whole).data());
 }
 
 }  // namespace pcl_symmetry

@@ -74,7 +74,4 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
 /// \return one probability per frame; their sum is less than 1.
 std::vector<double> frameProbabilities(const std::vector<FrameChoice>& choices, const FrameTerms& weights);
 
-/// The weights that were fitted.
-FrameTerms frameWeights(bool scanned);
-
 }  // namespace pcl_symmetry

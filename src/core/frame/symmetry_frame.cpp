@@ -9,6 +9,7 @@
 #include "core/base/stopwatch.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
+#include "core/frame/frame_fit.h"
 #include "core/frame/frame_search.h"
 #include "core/frame/probable_frames.h"
 #include "core/geometry/directions.h"
@@ -102,7 +103,8 @@ void addRotations(const PointsRef& points, const GaussianEdt& edt, const FrameOp
 std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const SymmetryFrame& frame,
                                           const std::vector<FrameChoice>& choices,
                                           const std::vector<Eigen::Vector3d>& centers) {
-  const std::vector<double> probabilities = frameProbabilities(choices, frameWeights(evidence.scanned));
+  const auto& weights = evidence.scanned ? kFrameFit.scan : kFrameFit.whole;
+  const std::vector<double> probabilities = frameProbabilities(choices, Eigen::Map<const FrameTerms>(weights.data()));
   std::vector<ProbableFrame> probable;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const FrameChoice& choice = choices[i];

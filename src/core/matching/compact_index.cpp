@@ -57,10 +57,6 @@ CompactIndex::CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const C
   leading_ = compact_.topRows(std::min<Eigen::Index>(compact_.rows(), options.num_leading));
 }
 
-Eigen::Index CompactIndex::numShapes() const {
-  return compact_.cols() / forms_per_shape_;
-}
-
 /// The forms whose leading components are nearest to any rotation of the query, by ascending index.
 std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std::size_t count) const {
   std::vector<int> forms = allIndices(compact_.cols());

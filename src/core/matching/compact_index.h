@@ -36,7 +36,7 @@ public:
   CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const CompactIndexOptions& options = {},
                std::vector<float> typical = {});
 
-  Eigen::Index numShapes() const;
+  Eigen::Index numShapes() const { return compact_.cols() / forms_per_shape_; }
 
   /// \param rotations K x 24 M, all rotations of the query's compact forms, see SignatureProjection::rotations().
   /// \param num_nearest >= 0.

@@ -135,12 +135,6 @@ const CubeRotation& cubeRotation(int rotation) {
   return rotations[rotation];
 }
 
-/// Points about the center of their bounding ball, in units of its radius.
-Points inRadii(const PointsRef& points) {
-  const BoundingBall ball = checkedBall(points);
-  return normalizePoints(points, ball.center, ball.radius);
-}
-
 /// Points in the given axes, about the point half-way between their center of mass and the middle of their extent.
 Points aboutMiddle(const Points& points, const Eigen::Matrix3d& axes) {
   Points rotated = axes.transpose().cast<float>() * points;
@@ -159,7 +153,8 @@ Points stretched(const Points& points) {
 }  // namespace
 
 std::vector<float> shapeSignature(const PointsRef& points, const Eigen::Matrix3d& axes) {
-  const Points centered = inRadii(points);
+  const BoundingBall ball = checkedBall(points);
+  const Points centered = normalizePoints(points, ball.center, ball.radius);
   const CellNormals surface =
       cellNormals(centered, Eigen::Vector3d::Constant(-1.0), 2.0 / kMatching.normal_cells, kMatching.normal_cells);
   const Points rotated = aboutMiddle(centered, axes);

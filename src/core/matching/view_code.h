@@ -59,7 +59,6 @@ public:
   void add(const std::string& codes);
 
   std::size_t numShapes() const { return begins_.size() - 1; }
-  std::size_t numViews() const { return begins_.back(); }
 
   /// \param count >= 0.
   /// \return the numbers of the nearest shapes, ascending, at most \p count. Shapes without views are never found.
@@ -82,8 +81,6 @@ class ViewIndex {
 public:
   /// \param views views of a shape, from viewsAround().
   void add(const std::vector<View>& views);
-
-  int numShapes() const { return static_cast<int>(shapes_.size()); }
 
   /// \return nearest first, at most \p num_nearest. Shapes without views are never found.
   std::vector<ShapeOfView> nearest(const View& scan, int num_nearest = 10, int num_threads = 0) const;

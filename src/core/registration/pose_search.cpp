@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/base/small_motion.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/point_samples.h"
 #include "core/registration/pose_scoring.h"
 #include "core/registration/registration_rules.h"
 
@@ -22,13 +23,6 @@ namespace {
 Eigen::Vector3d anchorOf(const Eigen::Matrix3Xd& in_scanner) {
   const Eigen::Vector3d low = in_scanner.rowwise().minCoeff(), high = in_scanner.rowwise().maxCoeff();
   return {0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), low.z()};
-}
-
-Eigen::Matrix3Xd sampleOf(const PosedSurface& surface) {
-  const auto size = std::min<Eigen::Index>(kRegistration.outline_points, surface.points.cols());
-  Eigen::Matrix3Xd sample(3, size);
-  for (Eigen::Index i = 0; i < size; ++i) sample.col(i) = surface.points.col(surface.order[i]).cast<double>();
-  return sample;
 }
 
 /// The rotations that represent all rotations about an axis of revolution; the identity alone if there is no such axis.
@@ -73,8 +67,9 @@ std::vector<Eigen::Matrix3d> uniformRotations(int num_rotations) {
   return rotations;
 }
 
-PoseStarts::PoseStarts(const PosedSurface& scan, const PosedSurface& model)
-    : from_outline_(scan.seen.has_value()), model_(sampleOf(model)) {
+PoseStarts::PoseStarts(const PosedSurface& scan, const PosedSurface& model) : from_outline_(scan.seen.has_value()) {
+  const auto size = std::min<Eigen::Index>(kRegistration.outline_points, model.points.cols());
+  model_ = pointsAt(model.points, {model.order.begin(), model.order.begin() + size}).cast<double>();
   if (!from_outline_) {
     scan_anchor_ = centerOfMass(scan.points);
     model_anchor_ = centerOfMass(model.points);

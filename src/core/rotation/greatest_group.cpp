@@ -113,14 +113,6 @@ std::optional<PlacedGroup> polyhedralGroup(const RotationFit& fit, const ObjectS
   return std::nullopt;
 }
 
-/// The greatest group of a body of revolution.
-PlacedGroup continuousGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                            const std::vector<PlacedGroup>& axes) {
-  if (auto sphere = sphericalGroup(fit, options, axes.front())) return *sphere;
-  if (auto cylinder = cylindricalGroup(fit, options, axes.front())) return *cylinder;
-  return axes.front();
-}
-
 /// The greatest group with axes of finite order: the regular solids, then prisms, then the rotations about one axis.
 PlacedGroup finiteGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                         const std::vector<PlacedGroup>& axes) {
@@ -139,7 +131,10 @@ PlacedGroup finiteGroup(const RotationFit& fit, const ObjectSymmetryOptions& opt
 PlacedGroup greatestGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                           const std::vector<PlacedGroup>& axes) {
   if (axes.empty()) return {};
-  return axes.front().fold == 0 ? continuousGroup(fit, options, axes) : finiteGroup(fit, options, axes);
+  if (axes.front().fold != 0) return finiteGroup(fit, options, axes);
+  if (auto sphere = sphericalGroup(fit, options, axes.front())) return *sphere;
+  if (auto cylinder = cylindricalGroup(fit, options, axes.front())) return *cylinder;
+  return axes.front();
 }
 
 }  // namespace pcl_symmetry

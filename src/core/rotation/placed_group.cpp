@@ -13,10 +13,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-bool representsAll(RotationGroupKind kind) {
-  return kind == RotationGroupKind::Revolution || kind == RotationGroupKind::Spherical;
-}
-
 /// The mean shares of rotations that represent all rotations; nothing if one of them fails clearly. The worst one would
 /// be a matter of chance.
 std::optional<OffShares> meanShares(const RotationFit& fit, const RotationSet& set) {
@@ -45,9 +41,10 @@ std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymme
   set = fit.fitClosely(set);
   const double some = greatestExcess(fit.limits());
   if (fit.limits().excess(fit.worstShares(set, kRotation.num_some_points, some)) > some) return std::nullopt;
+  const bool represents_all = kind == RotationGroupKind::Revolution || kind == RotationGroupKind::Spherical;
   const std::optional<OffShares> shares =
-      representsAll(kind) ? meanShares(fit, set)
-                          : fit.worstShares(set, std::numeric_limits<int>::max(), 1.0 / options.min_confidence);
+      represents_all ? meanShares(fit, set)
+                     : fit.worstShares(set, std::numeric_limits<int>::max(), 1.0 / options.min_confidence);
   if (!shares || fit.confidence(*shares) < options.min_confidence) return std::nullopt;
   const Eigen::Vector3d axis = Eigen::AngleAxisd(set.rotations.front()).axis();
   return PlacedGroup{kind, fold, std::move(set), axis, *shares};

@@ -73,10 +73,6 @@ ClosestSymmetry closestSymmetry(const ObjectSymmetries& symmetries, const Eigen:
   return closest;
 }
 
-double angleBetween(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  return Eigen::Quaterniond(a).angularDistance(Eigen::Quaterniond(b));
-}
-
 /// The rotation R C with the smallest angle, for rotations C about an axis. If R is a half turn about a line
 /// perpendicular to the axis, all have the angle pi: then it is the one closest to a half turn about a fixed line.
 Eigen::Matrix3d smallestRotation(const Eigen::Matrix3d& R, const Eigen::Vector3d& axis) {
@@ -201,7 +197,8 @@ Eigen::Isometry3d ObjectSymmetries::canonical(const Eigen::Isometry3d& T) const 
 }
 
 PoseDistance ObjectSymmetries::distance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2) const {
-  return {angleBetween(T_1.linear(), closestTo(T_2, T_1).linear()), (T_1 * center - T_2 * center).norm()};
+  const Eigen::Quaterniond R_1(T_1.linear()), R_2(closestTo(T_2, T_1).linear());
+  return {R_1.angularDistance(R_2), (T_1 * center - T_2 * center).norm()};
 }
 
 double ObjectSymmetries::surfaceDistance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2,

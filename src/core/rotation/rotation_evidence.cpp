@@ -20,12 +20,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Radius of the greatest disc that represents a point.
-double greatestDisc(const LocalGeometry& geometry) {
-  return kEvidence.disc_radius *
-         static_cast<double>(*std::max_element(geometry.spacing.begin(), geometry.spacing.end()));
-}
-
 /// The line, moved by tilts about the two directions perpendicular to it and by translations along them.
 Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
   const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
@@ -95,7 +89,8 @@ RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double toleranc
     : cloud_(cloud),
       tolerance_(tolerance),
       far_(kRotation.far_tolerances * tolerance),
-      greatest_disc_(greatestDisc(cloud.geometry)),
+      greatest_disc_(kEvidence.disc_radius * static_cast<double>(*std::max_element(cloud.geometry.spacing.begin(),
+                                                                                   cloud.geometry.spacing.end()))),
       samples_(drawSamples(cloud.points.cols(), kScanAxes.num_samples, seed)),
       few_samples_(drawSamples(cloud.points.cols(), kScanAxes.num_few_samples, seed)),
       facing_(normalsToward(cloud.geometry.normals, cloud.points, cloud.visibility->viewpoint().cast<float>())) {}

@@ -242,12 +242,6 @@ Points imageDirections(const PointsRef& points, const Eigen::Vector3d& viewpoint
   return directions;
 }
 
-/// Median distance of neighbors from the tangent planes at every \p stride-th point.
-double typicalRoughness(const Points& surface, Eigen::Index stride) {
-  return median(localGeometryAt(surface, *makeFlannSearch(surface), pointsAt(surface, everyNth(surface.cols(), stride)))
-                    .roughness);
-}
-
 using Positions = std::vector<Eigen::Array2d>;
 
 /// The direction of the rows of positions, one of four at right angles, and the distance of neighbors.
@@ -378,28 +372,29 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   const double distance = (ball.center - viewpoint).norm();
   if (!(ball.radius > 0.0) || !(distance > 0.0)) return 0.0;
   const Eigen::Index stride = 1 + (points.cols() - 1) / kScan.max_layer_samples;
+  const Points surface = normalizePoints(points, ball.center, ball.radius);
+  const std::vector<int> samples = everyNth(points.cols(), stride);
   const double min_gap =
-      kScan.roughnesses * typicalRoughness(normalizePoints(points, ball.center, ball.radius), stride);
+      kScan.roughnesses *
+      median(localGeometryAt(surface, *makeFlannSearch(surface), pointsAt(surface, samples)).roughness);
 
   // The nearest other point of each sample in the image.
   const double width = ball.radius / distance;
   const Points directions = imageDirections(points, viewpoint, ball.center, width);
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeFlannSearch(directions)
-      ->search(pointsAt(directions, everyNth(directions.cols(), stride)), 2, closest, sq_distances);
+  makeFlannSearch(directions)->search(pointsAt(directions, samples), 2, closest, sq_distances);
 
   const auto depth = [&](Eigen::Index i) { return (points.col(i).cast<double>() - viewpoint).norm() / ball.radius; };
   std::size_t num_layered = 0;
-  const std::size_t num_samples = closest.size() / 2;
-  for (std::size_t s = 0; s < num_samples; ++s) {
-    const auto i = static_cast<Eigen::Index>(s) * stride;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const int i = samples[s];
     const std::size_t other = closest[2 * s] == i ? 2 * s + 1 : 2 * s;
     const double across = std::sqrt(sq_distances[other]) * width * depth(i);
     const double along = std::abs(depth(i) - depth(closest[other]));
     num_layered += along > std::max(kScan.steepest * across, min_gap) ? 1 : 0;
   }
-  return static_cast<double>(num_layered) / static_cast<double>(num_samples);
+  return static_cast<double>(num_layered) / static_cast<double>(samples.size());
 }
 
 std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint,

@@ -150,10 +150,6 @@ bool ScanDensity::bulgesToward(const Eigen::Vector3d& viewpoint) const {
   return toward.cwiseProduct(samples_).sum() > 0.0f;
 }
 
-double ScanDensity::variance() const {
-  return varianceOf(samples_.cols());
-}
-
 double ScanDensity::varianceOf(Eigen::Index num_samples) const {
   return trimmedVariance(num_samples, [&](Eigen::Index i) { return log_density_[i]; });
 }

@@ -35,7 +35,7 @@ public:
   bool bulgesToward(const Eigen::Vector3d& viewpoint) const;
 
   /// \return the variance of log(density), which a viewpoint has to explain.
-  double variance() const;
+  double variance() const { return varianceOf(samples_.cols()); }
 
   /// \return the variance of log(density) of random points, which no viewpoint explains.
   double varianceAtRandom() const { return 1.0 / num_neighbors_; }

@@ -76,9 +76,7 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
                                   const SegmentationOptions& options, std::uint64_t seed) {
   const int num_threads = options.num_threads;
   const Points samples = sampleElements(graph, elements, seed);
-  GaussianEdtOptions edt_options;
-  edt_options.num_threads = num_threads;
-  const GaussianEdt edt(samples, edt_options);
+  const GaussianEdt edt(samples, {GaussianEdtOptions().num_cells, 0.0, num_threads});
   SymmetryFeatures features;
   features.radius = boundingBall(samples).radius;
   if (options.splitting.as_published) {

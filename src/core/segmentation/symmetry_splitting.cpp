@@ -109,9 +109,7 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
   }
 
   // "the exact boundary between them"
-  BorderCutOptions cut;
-  cut.band = kSegmentation.cut_band * features.radius;
-  cut.concavity_weight = options.concavity_weight;
+  const BorderCutOptions cut{kSegmentation.cut_band * features.radius, options.concavity_weight};
   side = cutBorder(graph, std::move(side), open, cut);
   SplitPart split;
   for (const int element : elements) (side[element] == 0 ? split.first : split.second).push_back(element);

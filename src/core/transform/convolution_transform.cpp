@@ -47,7 +47,7 @@ struct BundleLattice {
   BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, double spacing_in_sigmas)
       : middle(middleCell(edt)),
         clip(middle - 0.5),
-        center(((grid.center() - edt.origin()) / edt.cellSize()).array() - middle),
+        center(toCells(edt, grid.center())),
         grid_offset(grid.offset(0) / edt.cellSize()),
         radius_step(grid.radiusStep() / edt.cellSize()),
         spacing(spacing_in_sigmas * edt.sigma() / edt.cellSize()),
