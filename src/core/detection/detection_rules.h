@@ -95,8 +95,8 @@ struct DetectionRules {
     double no_surface = 1.5;  ///< spacing in tolerances from which points are too sparse for a surface
     int max_possible = 5;  ///< greatest number of symmetries and possible planes together, if there are possible ones
     double slope_dip = 0.005;  ///< rise of D on the way to a better plane that counts as rounding
-    double slope_angle = 0.2,
-           slope_offset = 0.15;  ///< angle and offset to a better plane within which a plane may lie on its slope
+    /// Angle and offset to a better plane within which a plane may lie on its slope.
+    double slope_angle = 0.2, slope_offset = 0.15;
   } decide;
 
   /// Polygons and families.

@@ -94,7 +94,8 @@ public:
   /// \param rim a reflection contradicts only if the space within this distance on either side is free, too.
   MeasuredPlane measurePlane(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
 
-  /// Evidence of a whole cloud for one plane; fields beyond support, conflict and D keep their defaults.
+  /// Evidence for a plane with what all planes of the cloud share; `share`, `double_share`, `stiffness` and `unknown`
+  /// keep their defaults.
   PlaneEvidence evidenceOf(double support, double conflict, double score) const;
 
   /// The greatest share of the surface that a plane may map to within the tolerance, as far as some points show.

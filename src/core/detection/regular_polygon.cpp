@@ -68,8 +68,8 @@ public:
     for (int k = std::max(1, m - kDetection.folds.compared_frequencies); k <= m + kDetection.folds.compared_frequencies;
          ++k)
       if (k != m) beside.push_back(power(k));
-    const double now = power(m) / std::max(median(beside), 1e-30);
-    return power(m) >= kDetection.folds.min_power && now >= kDetection.folds.stands_out ? now : 0.0;
+    const double ratio = power(m) / std::max(median(beside), 1e-30);
+    return power(m) >= kDetection.folds.min_power && ratio >= kDetection.folds.stands_out ? ratio : 0.0;
   }
   /// Angle of the normal of a plane, radians.
   double phase(int m) const { return 0.5 * kPi + std::arg(squares_[m]) / (2.0 * m); }
@@ -241,9 +241,9 @@ std::optional<RegularPolygon> polygonBySpectrum(const Points& all, const Line3d&
   int fold = 0;
   double most = 0.0;
   for (int m = kDetection.folds.min_fold; m <= kDetection.folds.max_frequency; ++m) {
-    const double now = spectrum.prominence(m);
-    if (now <= most) continue;
-    most = now;
+    const double prominence = spectrum.prominence(m);
+    if (prominence <= most) continue;
+    most = prominence;
     fold = m;
   }
   if (fold == 0) return std::nullopt;

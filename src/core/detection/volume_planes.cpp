@@ -267,10 +267,10 @@ struct VolumeSearch {
 
   /// Of the planes that ended at the same plane only the best one, best first.
   std::vector<SymmetryPlane> distinct(std::vector<SymmetryPlane> planes) const {
-    const MergeTolerance one{kVolume.merge_angle, kVolume.merge_offset * edt.radius()};
+    const MergeTolerance same_maximum{kVolume.merge_angle, kVolume.merge_offset * edt.radius()};
     sortDescending(planes, &SymmetryPlane::support);
     eraseIf(planes, [](const SymmetryPlane& plane) { return !(plane.support > 0.0); });
-    return one.distinct(
+    return same_maximum.distinct(
         std::move(planes), [&](const SymmetryPlane& plane) { return plane.normalized(center); }, options.max_planes);
   }
 

@@ -110,7 +110,7 @@ public:
   };
 
   /// \param samples 3 x N, finite, N >= 1.
-  /// \param geometry local geometry of the samples; must outlive this object, as must the samples.
+  /// \param geometry local geometry of the samples.
   /// \param disc_radius spacings, > 0.
   /// \param reach greatest distance of a query, units of the samples, > 0.
   SurfaceDiscs(const Points& samples, const LocalGeometry& geometry, float disc_radius, float reach);

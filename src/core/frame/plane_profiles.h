@@ -63,10 +63,10 @@ private:
   float middle_;
   bool scanned_;
   std::uint32_t outside_;
-  std::vector<std::uint32_t>
-      cells_;  // 255 times f, and from bit 8 on 255 times free space; the last one is for all positions outside
+  // 255 times f, and from bit 8 on 255 times free space; the last one is for all positions outside.
+  std::vector<std::uint32_t> cells_;
   Eigen::ArrayX3f samples_;  // cells from the middle of the grid
-  std::vector<int> own_;     // cell of each sample
+  std::vector<int> own_;     // 255 times f at each sample
 };
 
 }  // namespace pcl_symmetry

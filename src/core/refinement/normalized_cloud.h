@@ -37,9 +37,9 @@ struct NormalizedCloud {
   const ClosestPointSearch::Ptr search;
   FoundNeighbors neighbors;  ///< neighbors of the points, found together with their geometry
   const LocalGeometry geometry;
-  const std::shared_ptr<const NeighborLists>
-      lists;                     ///< null if there are too many points or the processor lacks the instructions
-  const SurfaceSamples samples;  ///< the points and their geometry
+  /// Null if there are too many points or the processor lacks the instructions.
+  const std::shared_ptr<const NeighborLists> lists;
+  const SurfaceSamples samples;                ///< the points and their geometry
   const std::optional<Visibility> visibility;  ///< what the scanner of a scan saw, normalized frame
   const FarTest far;
   const IspSurface surface;                  ///< the above, as input of Iterative Symmetric Points

@@ -20,8 +20,8 @@ struct RegistrationRules {
 
   // Merit of a pose
   float normal_share = 0.7f;  ///< share of a point's support that depends on its normal
-  double point_share =
-      0.1;  ///< weight of a residual along the surface, so that poses do not slide away on plain surfaces
+  /// Weight of a residual along the surface, so that poses do not slide away on plain surfaces.
+  double point_share = 0.1;
   /// Least share of the model's points that conflicts are divided by, even if the scan judges fewer.
   double min_judged = 0.05;
   double silhouette_share = 0.5;  ///< weight of a model point in free space relative to a point of the scan
@@ -71,8 +71,8 @@ struct RegistrationRules {
   double same_pose = 0.03;      ///< distance within which a symmetry maps a model onto itself, diameters
   /// Distance within which the motion to another pose may be a symmetry that ICP has not reached, diameters.
   double near_pose = 0.05;
-  double symmetric_agreement =
-      0.9;  ///< agreement of a scan with its image under a symmetry; wrong poses of scans have 0.3 to 0.6
+  /// Agreement of a scan with its image under a symmetry; wrong poses of scans have 0.3 to 0.6.
+  double symmetric_agreement = 0.9;
   /// Greatest share of the scan that may lie aside under a symmetry; the handle of a mug is 0.09.
   double symmetric_aside = 0.05;
   /// PoseEvidence::outside of a pose with a confidence of one half; 127 of 128 right poses of real scans have less.

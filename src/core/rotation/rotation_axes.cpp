@@ -145,9 +145,9 @@ std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& 
     RotationSet other{{rotationAbout(start.direction(), 2.0 * kPi / fold)}, start.origin(), 1};
     if (fit.overlap(other) < kRotation.min_overlap) continue;
     other = fit.fitRoughly(other);
-    const double its_overlap = fit.overlap(other);
-    if (its_overlap <= overlap + kRotation.clearly_better) continue;
-    overlap = its_overlap;
+    const double fitted_overlap = fit.overlap(other);
+    if (fitted_overlap <= overlap + kRotation.clearly_better) continue;
+    overlap = fitted_overlap;
     best = std::move(other);
   }
   if (overlap < kRotation.rough_overlap || kSameLine.anySame(tried, lineOf(best, start))) return std::nullopt;

@@ -83,8 +83,8 @@ struct RotationRules {
   std::size_t max_folds = 3;     // greatest number of folds of a line that are fitted, the greatest first
   int min_pattern = 3;           // least fold of equal pieces around a line that are a pattern rather than features
   double pattern_excess = 0.5;   // excess of the worst rotation from which a pattern is searched for
-  double max_tolerance_of_radius =
-      0.06;  // a bar 3 % as thick as long keeps its corners, a polygon of 12 sides is round
+  // A bar 3 % as thick as long keeps its corners, a polygon of 12 sides is round.
+  double max_tolerance_of_radius = 0.06;
 
   // Groups
   double axes_meet = 0.1;     // difference up to which the angles between two found axes and two axes of a group agree
@@ -94,8 +94,8 @@ inline constexpr RotationRules kRotation;
 
 /// Parameters of the axes of scans. Unless stated otherwise, lengths are in radii of the cloud and angles in radians.
 struct ScanAxisRules {
-  int normal_samples = 600, normal_draws = 60,
-      normals_in_draw = 8;               ///< samples, draws, and normals per draw, for lines of bodies of revolution
+  /// Samples, draws, and normals per draw, for lines of bodies of revolution.
+  int normal_samples = 600, normal_draws = 60, normals_in_draw = 8;
   int from_normals = 3;                  ///< greatest number of such lines that are kept
   double angle_of_fold = 3.0 * kDegree;  ///< error of the angles between planes of scans, radians
   double min_plane_angle = 0.13;         ///< least angle between two planes that give a common line

@@ -130,8 +130,8 @@ struct ScanRules {
   /// Factor on the variance that the best viewpoint leaves, within which another viewpoint is as good: the true
   /// viewpoint of 1000 points is within it.
   double as_good = 1.3;
-  double as_good_beyond =
-      2.0 * min_variance;  ///< variance added to this limit: a depth camera is 3 degrees from the best viewpoint
+  /// Variance added to this limit: a depth camera is 3 degrees from the best viewpoint.
+  double as_good_beyond = 2.0 * min_variance;
   /// Greatest variance that one of several viewpoints may leave; true ones leave 0.0023, two scans put together 0.006.
   double max_of_several = 0.003;
   /// Least number of points: they give 25 independent densities, a quarter of whose variance three parameters explain

@@ -25,8 +25,8 @@ struct SegmentationRules {
   double min_part = 0.003;
   /// Distance within which borders of parts may move, square roots of the area of the surface.
   double part_cut_band = 0.03;
-  double part_concavity =
-      3.0;  ///< SplittingOptions::concavity_weight of these cuts; more lets borders follow every crease
+  /// SplittingOptions::concavity_weight of these cuts; more lets borders follow every crease.
+  double part_concavity = 3.0;
 
   // Splitting
   double cut_band = 0.1;   ///< distance from the old border within which the minimum cut may lie, radii of the part

@@ -161,8 +161,7 @@ std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility* visibilit
 /// \return (1 + c) D / (D + F + c) with c = 0.15; 1 for D = 1 and F = 0. A plane that maps the surface into unknown
 /// space has D = F = 0 and the value 0.
 inline double seenSymmetry(double d, double f) {
-  // With this value, the first axis is within 5 degrees for 53 % of 160 scans of training models, with D alone for 36
-  // %.
+  // With this, the first axis is within 5 degrees for 53 % of 160 scans of training models; with D alone, for 36 %.
   constexpr double kDoubt = 0.15;
   return (1.0 + kDoubt) * d / (d + f + kDoubt);
 }
