@@ -136,7 +136,6 @@ TEST(CloudAnalysis, EveryClassNamesFieldValueAndRule) {
   EXPECT_EQ(messageOf([&] { planar.setBounds(Eigen::Vector3d::Zero(), 0.0); }), "radius = 0, must be finite and > 0");
   AxialSymmetryTransform<P> axial;
   EXPECT_EQ(messageOf([&] { axial.setOptions({{1}}); }), "fold = 1, must be 0 or in [2, 60]");
-  EXPECT_EQ(messageOf([&] { axial.setNumCells(4); }), "num_cells = 4, must be in [8, 512]");
   EXPECT_EQ(messageOf([&] { axial.setMapSize(8, 7, 8); }), "num_phi = 7, must be even and in [2, 1024]");
   SymmetryMaximaRefinement<P> refinement;
   EXPECT_EQ(messageOf([&] { refinement.setMinConfidence(1.5); }), "min_confidence = 1.5, must be in [0, 1]");

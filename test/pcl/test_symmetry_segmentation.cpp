@@ -1,6 +1,5 @@
 #include "pcl_symmetry/symmetry_segmentation.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -74,9 +73,6 @@ TEST_F(SymmetrySegmentationTest, SaysWhatIsWrongWithAMesh) {
   segmentation_.segment(segments_);
   EXPECT_TRUE(segments_.empty());
   EXPECT_EQ(segmentation_.getReason(), "mesh: no polygon has an area");
-  mesh_->polygons[0].vertices[0] = 1'000'000;
-  segmentation_.setInputMesh(mesh_);
-  EXPECT_THAT(test::messageOf([&] { segmentation_.segment(segments_); }), testing::HasSubstr("must be one that"));
 }
 
 TEST_F(SymmetrySegmentationTest, AUsedObjectIsAsGoodAsANewOne) {

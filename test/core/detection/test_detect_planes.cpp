@@ -103,9 +103,7 @@ TEST(DetectionOptions, RefusesBadOnes) {
   };
   refused([](auto& o) { o.num_cells = 1; });
   refused([](auto& o) { o.expert.maxima.strength = 2.0; });
-  refused([](auto& o) { o.expert.num_theta = 0; });
   refused([](auto& o) { o.expert.num_phi = 3; });
-  refused([](auto& o) { o.expert.num_radius = 0; });
   refused([](auto& o) { o.expert.max_candidates = 0; });
   refused([](auto& o) { o.expert.num_refine_samples = 9; });
   refused([](auto& o) { o.min_confidence = 1.5; });
