@@ -309,14 +309,15 @@ SeenSpace standingInScene(const SeenSpace& seen, const SymmetryScene::Cloud::Con
   const SceneDistances distances = sceneDistances(*scene, others);
   if (!(distances.plane > 0.0)) return seen;
   const std::vector<SupportingPlane> supports =
-      findSupports(scene, others, seen.visibility()->viewpoint(), distances.plane);
+      findSupports(scene, others, finite, seen.visibility()->viewpoint(), distances.plane);
   return seenOfObject(seen, *scene, supports, object, distances, tolerance);
 }
 
 std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
-                                          const std::optional<Eigen::Vector3d>& viewpoint, double distance) {
+                                          pcl::Indices others, const std::optional<Eigen::Vector3d>& viewpoint,
+                                          double distance) {
   std::vector<SupportingPlane> supports;
-  pcl::Indices candidates = points, others = points;
+  pcl::Indices candidates = points;
   const float scale = unitScale(distance);
   const SymmetryScene::Cloud::ConstPtr in_unit = scaled(*scene, scale);
   for (int round = 0; round < kScene.max_planes; ++round) {

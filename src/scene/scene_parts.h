@@ -49,11 +49,13 @@ SeenSpace seenOfModel(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
                       const SceneDistances& distances);
 
 /// The greatest planes of a scene that other points stand on or in front of.
-/// \param points indices of finite points.
+/// \param points indices of finite points that may lie on the planes.
+/// \param others indices of finite points that may stand on them, those that lie on them included.
 /// \param viewpoint position of the sensor; nothing: the normals point to the side with most of the other points.
 /// \param distance greatest distance of points that belong to a plane, > 0.
 std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
-                                          const std::optional<Eigen::Vector3d>& viewpoint, double distance);
+                                          pcl::Indices others, const std::optional<Eigen::Vector3d>& viewpoint,
+                                          double distance);
 
 /// A supporting plane that is known.
 /// \param plane unit normal of any sign; objects are on the side of the viewpoint, or else on the side with most

@@ -18,7 +18,7 @@ struct SceneRules {
   double min_share = 0.08;        ///< least share of the points of planes that are tried
   double bare_share = 0.25;       ///< least share of the points in a support without objects
   /// Share of the points of a plane, on one side of it, that show on which side the scene is.
-  double telling_share = 0.01;
+  double telling_share = 0.003;
   double attached = 10.0;           ///< depth behind a plane within which other faces of a body begin, plane distances
   double footprint_trim = 0.05;     ///< share of the points of a plane trimmed at each end of its footprint
   int consensus_iterations = 1000;  ///< draws of sample consensus; a plane of 20 % of the points needs 600

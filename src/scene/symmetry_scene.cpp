@@ -282,7 +282,7 @@ SceneAnalysis SymmetryScene::compute() const {
   if (ground_)
     analysis.supports = {detail::supportOf(*frame, points, viewpoint, *ground_, distances.plane)};
   else
-    analysis.supports = detail::findSupports(frame, points, viewpoint, distances.plane);
+    analysis.supports = detail::findSupports(frame, points, points, viewpoint, distances.plane);
   done("supports");
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, frame->size());
   std::vector<pcl::Indices> clusters =

@@ -61,6 +61,14 @@ TEST(StandingInScene, APartOfAFrameKnowsTheTableThatItStandsOn) {
   EXPECT_LT((seen.visibility()->supports()[0].head<3>() - Eigen::Vector3d::UnitZ()).norm(), 1e-3);
 }
 
+TEST(StandingInScene, WhatStandsAloneKnowsItsTableToo) {
+  const test::Table table({{0.0, 0.0, 0.0}, {-0.15, 0.35, 0.0}});  // the second box is within the first
+  const Cloud::ConstPtr frame = pictureOf(table.scan);
+  const SeenSpace seen = detail::standingInScene(SeenSpace(*frame), frame, table.pixelsOf(1), 0.01);
+  ASSERT_NE(seen.visibility(), nullptr);
+  EXPECT_EQ(seen.visibility()->supports().size(), 1u);
+}
+
 TEST(WithoutDepthErrors, IsWhatPartsOfAFrameDoThemselves) {
   const Cloud::ConstPtr noisy = withDepthErrors(twoBoxes().scan);
   auto own = ofBox(noisy, 1), shared = ofBox(withoutDepthErrors(noisy, SeenSpace(*noisy)), 1);

@@ -54,6 +54,16 @@ class Planes(ToolTest):
             self.assertTrue(handle > 0.99 and not others, direction)
             self.assertIn("the inside of a hollow body was seen through one end alone", self.output)
 
+    def test_planes_beside_the_axis_of_a_bowl_are_possible_at_most(self):
+        angles = np.linspace(0.01, np.pi / 2, 16)
+        outside = [(np.sin(angle), -np.cos(angle)) for angle in angles]
+        bowl = self.write("bowl.off", lathe(outside + [(0.92 * r, 0.92 * z) for r, z in outside[::-1]], 96))
+        self.run_tool(bowl, "scan.pcd -direction 0.3,1,0.5 -noise 0.002 -quiet", tool="scan")
+        report = self.report("scan.pcd", "-explain")
+        self.assertEqual(len(report["axes"]), 1)
+        self.assertEqual([plane["kind"] for plane in report["planes"]], ["possible"])
+        self.assertIn("neither contains nor is perpendicular to an axis of revolution", self.output)
+
     def test_keeps_coordinates_beyond_float_precision(self):
         """A box of 1 x 0.8 x 0.6 m at map coordinates, where the spacing of float is half a meter; its planes are oblique."""
         half, middle, turn = (0.5, 0.4, 0.3), np.array([500000.3, 5000000.7, 100.2]), rotation((1, 2, 3), 0.7)

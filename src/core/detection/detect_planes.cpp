@@ -156,6 +156,17 @@ void findAxesOfScan(const PlaneSearch& search, DetectionState& state) {
   }
 }
 
+/// The planes of a body of revolution contain its axis or are perpendicular to it. Those that are neither, and less
+/// likely than the axis, are possible at most.
+void limitAskewPlanes(const PlaneSearch& search, DetectionState& state) {
+  for (SymmetryPlane& plane : state.answer.planes)
+    if (std::any_of(state.answer.axes.begin(), state.answer.axes.end(), [&](const SymmetryAxis& axis) {
+          return axis.confidence > plane.confidence &&
+                 !isAcross(search.cloud.toNormalized(plane), search.cloud.lineOf(axis));
+        }))
+      limitToPossible(plane, "neither contains nor is perpendicular to an axis of revolution, which is likelier");
+}
+
 /// Corrections of results by each other, applied in this order. Not in the paper.
 constexpr struct {
   const char* name;  ///< stage in Detection::timing_ms
@@ -170,6 +181,7 @@ constexpr struct {
     {"polygon", completePolygon},
     {"families", findFamilies},
     {"rotations", findAxesOfScan},
+    {"beside_axis", limitAskewPlanes},
     {"beside_best",
      [](const PlaneSearch& search, DetectionState& state) {
        doubtFurtherPlanes(state.answer.planes, state.answer.hasFamily(), search.cloud.kind(), search.options);
