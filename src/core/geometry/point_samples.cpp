@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -48,66 +49,35 @@ std::vector<float> distancesFromMiddle(const PointsRef& points) {
   return values;
 }
 
-/// The points of a cloud that gaps separate from its bulk.
-class OuterGroups {
-public:
-  /// \param points distinct.
-  /// \param outer indices of the points beyond the bulk, ascending.
-  OuterGroups(const Points& points, const std::vector<int>& outer, float gap)
-      : outer_(outer),
-        num_neighbors_(std::min<int>(kGeometry.max_stray_group + 1, static_cast<int>(points.cols()))),
-        sq_gap_(gap * gap),
-        is_seen_(outer.size(), false) {
-    makeFlannSearch(points)->search(pointsAt(points, outer), num_neighbors_, neighbors_, sq_distances_);
+/// The outer points of a cloud that gaps separate from its bulk, alone or in tiny groups.
+/// \param points distinct.
+/// \param outer indices of the points beyond the bulk, ascending.
+/// \return indices, ascending.
+std::vector<int> isolatedPoints(const Points& points, const std::vector<int>& outer, float gap) {
+  const std::size_t bulk = outer.size();
+  const int num_neighbors = std::min<int>(kGeometry.max_stray_group + 1, static_cast<int>(points.cols()));
+  std::vector<int> neighbors;
+  std::vector<float> sq_distances;
+  makeFlannSearch(points)->search(pointsAt(points, outer), num_neighbors, neighbors, sq_distances);
+  // Trees of points with short gaps between them; the last entry stands for the bulk.
+  std::vector<std::size_t> parent(bulk + 1);
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  const auto rootOf = [&](std::size_t k) {
+    while (parent[k] != k) k = parent[k] = parent[parent[k]];
+    return k;
+  };
+  for (std::size_t i = 0; i < neighbors.size(); ++i) {
+    if (sq_distances[i] > gap * gap) continue;
+    const auto at = std::lower_bound(outer.begin(), outer.end(), neighbors[i]);
+    const bool is_outer = at != outer.end() && *at == neighbors[i];
+    parent[rootOf(i / num_neighbors)] = rootOf(is_outer ? static_cast<std::size_t>(at - outer.begin()) : bulk);
   }
-
-  /// \return the points of tiny groups that touch no others.
-  std::vector<int> stray() {
-    std::vector<int> all;
-    for (std::size_t k = 0; k < outer_.size(); ++k) {
-      const std::vector<int> group = isolatedGroup(k);
-      all.insert(all.end(), group.begin(), group.end());
-    }
-    std::sort(all.begin(), all.end());
-    return all;
-  }
-
-private:
-  /// \return the group of an outer point, once; empty if it is large or touches the bulk.
-  std::vector<int> isolatedGroup(std::size_t first) {
-    std::vector<int> group;
-    bool is_isolated = true;
-    std::vector<std::size_t> open;
-    const auto add = [&](std::size_t k) {
-      if (is_seen_[k]) return;
-      is_seen_[k] = true;
-      open.push_back(k);
-      group.push_back(outer_[k]);
-    };
-    add(first);
-    while (!open.empty()) {
-      const std::size_t begin = open.back() * static_cast<std::size_t>(num_neighbors_);
-      open.pop_back();
-      for (std::size_t k = begin; k < begin + static_cast<std::size_t>(num_neighbors_); ++k) {
-        if (sq_distances_[k] > sq_gap_) break;
-        const auto at = std::lower_bound(outer_.begin(), outer_.end(), neighbors_[k]);
-        if (at != outer_.end() && *at == neighbors_[k])
-          add(static_cast<std::size_t>(at - outer_.begin()));
-        else
-          is_isolated = false;
-      }
-    }
-    if (!is_isolated || static_cast<int>(group.size()) > kGeometry.max_stray_group) group.clear();
-    return group;
-  }
-
-  const std::vector<int>& outer_;
-  const int num_neighbors_;
-  const float sq_gap_;
-  std::vector<bool> is_seen_;
-  std::vector<int> neighbors_;
-  std::vector<float> sq_distances_;
-};
+  std::vector<int> sizes(bulk + 1, 0), isolated;
+  for (std::size_t k = 0; k < bulk; ++k) ++sizes[rootOf(k)];
+  for (std::size_t k = 0; k < bulk; ++k)
+    if (rootOf(k) != rootOf(bulk) && sizes[rootOf(k)] <= kGeometry.max_stray_group) isolated.push_back(outer[k]);
+  return isolated;
+}
 
 /// \return the number of distinct points, counted up to \p max_count.
 int countDistinct(const PointsRef& points, int max_count) {
@@ -228,7 +198,7 @@ std::vector<int> strayPoints(const PointsRef& points) {
   std::vector<int> outer, stray;
   for (int k = 0; k < static_cast<int>(distinct.first_of.size()); ++k)
     if (distances[distinct.first_of[k]] > bulk) outer.push_back(k);
-  const std::vector<int> alone = OuterGroups(distinct.points, outer, gap).stray();
+  const std::vector<int> alone = isolatedPoints(distinct.points, outer, gap);
   for (int i = 0; i < static_cast<int>(points.cols()); ++i)
     if (std::binary_search(alone.begin(), alone.end(), distinct.index_of[i])) stray.push_back(i);
   if (static_cast<double>(stray.size()) > max_count) stray.clear();
