@@ -398,6 +398,37 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
   return clusters;
 }
 
+void attachHiddenParts(const SymmetryScene::Cloud& scene, const Eigen::Vector3d& viewpoint, int min_points,
+                       std::vector<pcl::Indices>& clusters) {
+  std::vector<pcl::Indices> bodies, parts;
+  for (pcl::Indices& cluster : clusters)
+    (static_cast<int>(cluster.size()) >= min_points ? bodies : parts).push_back(std::move(cluster));
+  clusters = bodies;
+  if (!scene.isOrganized()) return;
+  std::vector<int> body_of(scene.size(), -1);
+  std::vector<double> diagonals;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    for (const pcl::index_t i : bodies[k]) body_of[i] = static_cast<int>(k);
+    diagonals.push_back(boxDiagonal(pointsOf(scene, bodies[k])));
+  }
+  const auto rangeOf = [&](int i) { return (scene[i].getVector3fMap().cast<double>() - viewpoint).norm(); };
+  const int width = static_cast<int>(scene.width), height = static_cast<int>(scene.height);
+  for (const pcl::Indices& part : parts) {
+    std::vector<int> num_hiding(bodies.size() + 1, 0);  // pairs of pixels; the last is for no body
+    for (const pcl::index_t i : part)
+      for (int v = std::max(0, i / width - kScene.hidden_border);
+           v <= std::min(height - 1, i / width + kScene.hidden_border); ++v)
+        for (int u = std::max(0, i % width - kScene.hidden_border);
+             u <= std::min(width - 1, i % width + kScene.hidden_border); ++u) {
+          const int body = body_of[v * width + u];
+          const double behind = body < 0 ? 0.0 : rangeOf(i) - rangeOf(v * width + u);
+          if (behind > 0.0 && behind < diagonals[body]) ++num_hiding[body];
+        }
+    const auto most = std::max_element(num_hiding.begin(), num_hiding.end());
+    if (*most > 0) append(clusters[most - num_hiding.begin()], part);
+  }
+}
+
 void returnFeet(const SymmetryScene::Cloud& scene, std::vector<SupportingPlane>& supports,
                 std::vector<pcl::Indices>& clusters, const SceneDistances& distances) {
   NearestClusters nearest(scene.size(), {std::numeric_limits<float>::max(), -1});

@@ -76,6 +76,15 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
                                        const std::vector<SupportingPlane>& supports, const SceneDistances& distances,
                                        int min_points);
 
+/// Appends small clusters to the body that hides where they are attached, and drops the others: seen from the side, the
+/// handle of a mug stands apart in the picture, because its ends are behind the body.
+/// \param scene where it is not organized, all small clusters are dropped.
+/// \param min_points least number of points of a body. A smaller cluster belongs to the body that most of its pixels
+/// border, and lie behind by less than the body's diagonal.
+/// \param[in,out] clusters most points first.
+void attachHiddenParts(const SymmetryScene::Cloud& scene, const Eigen::Vector3d& viewpoint, int min_points,
+                       std::vector<pcl::Indices>& clusters);
+
 /// Returns feet to objects: points that were assigned to the support of an object because they lie within its distance,
 /// but that rise above the plane around the object by more than the noise.
 ///

@@ -13,6 +13,10 @@ struct SceneRules {
   std::size_t scale_samples = 1000;  ///< points that spacing and roughness are measured at
   /// Greatest distance of points from their supporting plane, spacings and roughnesses.
   double plane_spacings = 2.0, plane_roughnesses = 4.0;
+  /// Least size of a part whose attachment another part of its object hides, as a share of the least size of an object,
+  /// and greatest distance of the two in the picture, pixels.
+  double hidden_part = 0.25;
+  int hidden_border = 3;
   double cluster_spacings = 4.0;  ///< greatest distance between neighboring points of one object, spacings
   int max_planes = 6;             ///< greatest number of planes: a table, a floor, three walls and a large box
   double min_share = 0.08;        ///< least share of the points of planes that are tried

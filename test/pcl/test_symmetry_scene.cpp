@@ -92,6 +92,23 @@ TEST(SymmetryScene, DataWithoutAnswerGiveNoObject) {
   EXPECT_EQ(SymmetryScene().compute().reason, "not set");
 }
 
+/// The handle is at the back of a side that the camera does not see, in a depth 0.15 beyond the edge that it seems to
+/// border.
+TEST(SymmetryScene, AHandleBelongsToTheBodyThatHidesItsEnds) {
+  const test::Block table{{0.0, 0.0, -0.02}, {0.7, 0.7, 0.02}}, body{{0.0, 0.1, 0.12}, {0.2, 0.1, 0.12}},
+      handle{{0.22, 0.17, 0.12}, {0.04, 0.015, 0.05}};
+  const test::BlockObject without{{table, body}, {}}, with{{table, body, handle}, {}};
+  const Eigen::Vector3d viewpoint(0.1, -1.6, 1.0);
+  const auto pixelsOfObject = [&](const test::BlockObject& blocks) {
+    SymmetryScene scene;
+    scene.setInputCloud(pictureOf(test::scan(blocks, viewpoint, 0.0, 640, 480)));
+    const SceneAnalysis found = scene.compute();
+    EXPECT_EQ(found.objects.size(), 1u);
+    return found.objects.empty() ? pcl::Indices() : found.objects[0].indices;
+  };
+  EXPECT_GT(pixelsOfObject(with).size(), pixelsOfObject(without).size() + 50);
+}
+
 TEST(SymmetryScene, RefusesBadOptions) {
   SymmetryScene scene;
   SceneOptions options;
