@@ -55,6 +55,12 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
   return residuals;
 }
 
+/// The symmetric matrix without its negative eigenvalues.
+Matrix6d positivePart(const Matrix6d& matrix) {
+  const SymmetricEigen<Matrix6d> solver(matrix);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+}
+
 /// The Hessian of the residuals without the part due to noise of the normals, which would constrain directions along
 /// which the surface slides on itself.
 Matrix6d hessianWithoutNoise(Residuals residuals) {
@@ -62,8 +68,7 @@ Matrix6d hessianWithoutNoise(Residuals residuals) {
   // mean of two normals has a quarter of the variance of their difference; twice that, because large errors are more
   // frequent.
   const double sq_noise = 0.5 * median(std::move(residuals.sq_sines)) / std::log(2.0);
-  const SymmetricEigen<Matrix6d> solver(residuals.hessian - sq_noise * residuals.gain_of_noise);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+  return positivePart(residuals.hessian - sq_noise * residuals.gain_of_noise);
 }
 
 }  // namespace
@@ -79,14 +84,14 @@ Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, con
   if (residuals.count > WeightedProducts::kLast) {
     const double variance = std::max(kRegistration.min_deviation * kRegistration.min_deviation,
                                      residuals.sum_squares / (residuals.count - WeightedProducts::kLast));
-    Matrix6d correlated = Matrix6d::Zero();
-    for (const auto& [cell, gradient] : residuals.gradients) correlated += gradient * gradient.transpose();
+    Matrix6d gradient_covariance = Matrix6d::Zero();
+    for (const auto& [cell, gradient] : residuals.gradients) gradient_covariance += gradient * gradient.transpose();
     const auto num_cells = static_cast<double>(residuals.gradients.size());
-    correlated *= num_cells / std::max(1.0, num_cells - WeightedProducts::kLast) / (variance * variance);
-    // Independent errors of the points give the covariance H^-1, those that the points of a cell have in common H^-1 C
-    // H^-1; the inverse of the sum, H (H + C)^-1 H, also exists where H does not fix a direction.
+    gradient_covariance *= num_cells / std::max(1.0, num_cells - WeightedProducts::kLast) / (variance * variance);
     const Matrix6d hessian = hessianWithoutNoise(std::move(residuals)) / variance;
-    information += hessian * (information + hessian + correlated).inverse() * hessian;
+    // Independent errors give gradients of the covariance H, and the pose that of H^-1. Where gradients have more, C,
+    // the pose has H^-1 C H^-1 more; H (H + C)^-1 H, the inverse of the sum, also exists where H fixes no direction.
+    information += hessian * (information + hessian + positivePart(gradient_covariance - hessian)).inverse() * hessian;
   }
   return information.inverse();
 }
