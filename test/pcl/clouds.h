@@ -4,6 +4,7 @@
 #include <pcl/exceptions.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
 
 #include <limits>
 #include <string>
@@ -73,6 +74,22 @@ inline std::vector<std::pair<std::string, pcl::PointCloud<pcl::PointXYZ>::Ptr>> 
   clouds.emplace_back("a line", line);
   return clouds;
 }
+
+/// Counts its queries, to prove that it is used: without a lock, as a search that is derived from one of PCL's is
+/// called from one thread at a time.
+class CountingKdTree : public pcl::search::KdTree<pcl::PointXYZ> {
+public:
+  using Ptr = pcl::shared_ptr<CountingKdTree>;
+  using pcl::search::KdTree<pcl::PointXYZ>::nearestKSearch;
+
+  int nearestKSearch(const pcl::PointXYZ& point, int k, pcl::Indices& indices,
+                     std::vector<float>& sq_distances) const override {
+    ++num_queries;
+    return pcl::search::KdTree<pcl::PointXYZ>::nearestKSearch(point, k, indices, sq_distances);
+  }
+
+  mutable int num_queries = 0;
+};
 
 /// \return what a class of PCL says of wrong parameters.
 template <typename Body>

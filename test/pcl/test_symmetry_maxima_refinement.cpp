@@ -10,11 +10,9 @@
 #include <pcl/search/impl/flann_search.hpp>
 
 #include "pcl/clouds.h"
-#include "pcl/counting_search.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_detection.h"
 #include "shapes/found_planes.h"
-#include "shapes/scans.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -22,6 +20,10 @@ namespace {
 using test::expectSamePlanes;
 using test::numFound;
 using test::Sampling;
+
+int numUnseen(const std::vector<float>& support) {
+  return static_cast<int>(std::count_if(support.begin(), support.end(), [](float s) { return std::isnan(s); }));
+}
 
 TEST(SymmetryMaximaRefinement, HonorsIndicesAndLeavesOutPointsThatAreNotFinite) {
   const auto cloud = test::toCloud(test::box(2000, Sampling::Random, 4));
@@ -45,9 +47,7 @@ TEST(SymmetryMaximaRefinement, HonorsIndicesAndLeavesOutPointsThatAreNotFinite) 
     EXPECT_NEAR(support[used[i]], across_z->point_support[i], 0.05f)
         << "the plane moved by a step that no longer mattered";
   }
-  EXPECT_EQ(
-      static_cast<std::size_t>(std::count_if(support.begin(), support.end(), [](float s) { return std::isnan(s); })),
-      holes->size() - cloud->size());
+  EXPECT_EQ(numUnseen(support), static_cast<int>(holes->size() - cloud->size()));
 }
 
 /// Also for points that were not used, and where the scanner could not see.
@@ -59,20 +59,17 @@ TEST(SymmetryMaximaRefinement, SupportOfEveryPointIsThatOfThePlane) {
   const auto planes = refinement.compute();
   ASSERT_FALSE(planes.empty());
   const std::vector<float> support = refinement.computePointSupport(planes[0]);
-  double num_points = 0.0, num_seen = 0.0, sum = 0.0;
+  double num_points = 0.0;
+  std::vector<float> seen;
   for (std::size_t i = 0; i < cloud->size(); ++i) {
     if (!pcl::isXYZFinite((*cloud)[i])) continue;
     num_points += 1.0;
-    if (std::isnan(support[i])) continue;
-    num_seen += 1.0;
-    sum += support[i];
+    if (!std::isnan(support[i])) seen.push_back(support[i]);
   }
   EXPECT_LT(planes[0].seen, 0.9);
-  EXPECT_NEAR(num_seen / num_points, planes[0].seen, 0.05);
-  EXPECT_NEAR(sum / num_seen, planes[0].support, 0.05);
-  const auto is_unseen = [](float value) { return std::isnan(value); };
-  const std::vector<float>& used = planes[0].point_support;
-  EXPECT_NEAR(std::count_if(used.begin(), used.end(), is_unseen), (1.0 - planes[0].seen) * 2000.0, 100.0);
+  EXPECT_NEAR(static_cast<double>(seen.size()) / num_points, planes[0].seen, 0.05);
+  EXPECT_NEAR(test::meanOf(seen), planes[0].support, 0.05);
+  EXPECT_NEAR(numUnseen(planes[0].point_support), (1.0 - planes[0].seen) * 2000.0, 100.0);
 }
 
 TEST(SymmetryMaximaRefinement, TakesAnySearchMethod) {

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "pcl/clouds.h"
-#include "pcl/counting_search.h"
 #include "pcl/pcl_meshes.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "shapes/meshes.h"

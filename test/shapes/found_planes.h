@@ -9,6 +9,7 @@
 
 #include "pcl_symmetry/core/plane_types.h"
 #include "shapes/shapes.h"
+#include "shapes/threads.h"
 
 namespace pcl_symmetry::test {
 
@@ -31,18 +32,15 @@ inline int numFound(const Shape& shape, const std::vector<SymmetryPlane>& found,
 
 inline void expectSamePlanes(const std::vector<SymmetryPlane>& a, const std::vector<SymmetryPlane>& b) {
   const auto is_same = [](float x, float y) { return x == y || (std::isnan(x) && std::isnan(y)); };
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].coefficients(), b[i].coefficients());
-    EXPECT_EQ(a[i].confidence, b[i].confidence);
-    EXPECT_EQ(a[i].score, b[i].score);
-    EXPECT_EQ(a[i].support, b[i].support);
-    EXPECT_EQ(a[i].seen, b[i].seen);
-    EXPECT_EQ(a[i].residual, b[i].residual);
-    EXPECT_EQ(a[i].iterations, b[i].iterations);
+  const auto values = [](const std::vector<SymmetryPlane>& planes) {
+    return valuesOf(planes, &SymmetryPlane::coefficients, &SymmetryPlane::confidence, &SymmetryPlane::score,
+                    &SymmetryPlane::support, &SymmetryPlane::seen, &SymmetryPlane::residual,
+                    &SymmetryPlane::iterations);
+  };
+  ASSERT_EQ(values(a), values(b));
+  for (std::size_t i = 0; i < a.size(); ++i)
     EXPECT_TRUE(std::equal(a[i].point_support.begin(), a[i].point_support.end(), b[i].point_support.begin(),
                            b[i].point_support.end(), is_same));
-  }
 }
 
 }  // namespace pcl_symmetry::test

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/surface_graph.h"
 #include "shapes/shapes.h"
 
@@ -17,14 +17,10 @@ struct Mesh {
 
   int add(const Eigen::Vector3f& vertex) {
     vertices.conservativeResize(Eigen::NoChange, vertices.cols() + 1);
-    for (int k = 0; k < 3; ++k) vertices(k, vertices.cols() - 1) = vertex[k];
+    vertices.rightCols<1>() = vertex;
     return static_cast<int>(vertices.cols()) - 1;
   }
-  Eigen::Vector3f center(std::size_t polygon) const {
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    for (const int v : polygons[polygon]) sum += vertices.col(v);
-    return sum / static_cast<float>(polygons[polygon].size());
-  }
+  Eigen::Vector3f center(std::size_t polygon) const { return vertices(Eigen::all, polygons[polygon]).rowwise().mean(); }
   SurfaceGraph graph() const { return meshGraph(vertices, polygons); }
 };
 
@@ -88,14 +84,17 @@ inline Mesh dumbbell() {
   });
 }
 
-/// The same mesh without shared corners.
-inline Mesh soupOf(const Mesh& mesh) {
-  Mesh soup;
-  for (const auto& polygon : mesh.polygons) {
-    soup.polygons.emplace_back();
-    for (const int v : polygon) soup.polygons.back().push_back(soup.add(mesh.vertices.col(v)));
-  }
-  return soup;
+/// For each point the indices of its \p count nearest other points, nearest first.
+inline std::vector<std::vector<int>> neighborsOf(const Points& points, int count) {
+  std::vector<int> indices;
+  std::vector<float> sq_distances;
+  makeFlannSearch(points)->search(points, count + 1, indices, sq_distances);
+  std::vector<std::vector<int>> neighbors(points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    for (int k = 0; k <= count; ++k)
+      if (indices[i * (count + 1) + k] != i) neighbors[i].push_back(indices[i * (count + 1) + k]);
+  for (auto& own : neighbors) own.resize(count);
+  return neighbors;
 }
 
 }  // namespace pcl_symmetry::test

@@ -62,7 +62,7 @@ inline Points surfaceOf(const BlockObject& object, int num_points, std::uint64_t
   for (int i = 0; i < num_points;) {
     const auto face = std::upper_bound(ends.begin(), ends.end(), random.uniform() * total) - ends.begin();
     const Block& on = object.blocks[static_cast<std::size_t>(face / 3)];
-    Eigen::Vector3d unit(symmetric(random), symmetric(random), symmetric(random));
+    Eigen::Vector3d unit = randomPoint(random);
     unit[face % 3] = random.below(2) ? 1.0 : -1.0;
     const Eigen::Vector3d point = on.center + on.half.cwiseProduct(unit);
     const bool inside = std::any_of(object.blocks.begin(), object.blocks.end(), [&](const Block& block) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -37,6 +38,11 @@ inline double symmetric(RandomStream& random) {
 /// Standard normal, by Box and Muller.
 inline double gaussian(RandomStream& random) {
   return std::sqrt(-2.0 * std::log(1.0 - random.uniform())) * std::cos(2.0 * kPi * random.uniform());
+}
+
+/// Uniform in [-1, 1)^3.
+inline Eigen::Vector3d randomPoint(RandomStream& random) {
+  return Eigen::Vector3d(symmetric(random), symmetric(random), symmetric(random));
 }
 
 inline Eigen::Vector3d randomDirection(RandomStream& random) {
@@ -263,6 +269,11 @@ Points joined(const Clouds&... clouds) {
   Eigen::Index at = 0;
   ((all.middleCols(at, clouds.cols()) = clouds, at += clouds.cols()), ...);
   return all;
+}
+
+template <typename Number>
+double meanOf(const std::vector<Number>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 /// The diagonal of the bounding box, the unit in which offsets are judged.

@@ -76,6 +76,10 @@ inline TurningShape boxShape(const std::string& name, const Eigen::Vector3d& hal
   return shape;
 }
 
+inline TurningShape boxShape() {
+  return boxShape("box", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2);
+}
+
 /// A rectangle in z = 0.
 inline TurningShape sheetShape(double half_width, double half_height) {
   TurningShape shape = turningShape("sheet", RotationGroupKind::Dihedral, 2);
@@ -184,7 +188,7 @@ inline TurningShape propellerShape(int num_blades, bool hub) {
 
 inline std::vector<TurningShape> turningShapes() {
   using Kind = RotationGroupKind;
-  return {boxShape("box", {1.0, 0.7, 0.45}, Kind::Dihedral, 2),
+  return {boxShape(),
           boxShape("square prism", {0.6, 0.6, 1.0}, Kind::Dihedral, 4),
           boxShape("square plate", {1.0, 1.0, 0.15}, Kind::Dihedral, 4),
           boxShape("cube", {1.0, 1.0, 1.0}, Kind::Octahedral, 4),

@@ -14,15 +14,11 @@ using namespace pcl_symmetry::test;
 
 constexpr double kRounding = 1e-14;  // a few dozen operations of 1.1e-16 each, on numbers up to ten
 
-Eigen::Vector3d randomPoint(RandomStream& random) {
-  return {3.0 * symmetric(random), 3.0 * symmetric(random), 3.0 * symmetric(random)};
-}
-
 TEST(ReflectionPlane, AllFormsAreTheSameReflection) {
   RandomStream random(1);
   for (int i = 0; i < 100; ++i) {
     const ReflectionPlane plane(randomDirection(random), 2.0 * symmetric(random));
-    const Eigen::Vector3d x = randomPoint(random), reflected = plane.reflect(x);
+    const Eigen::Vector3d x = 3.0 * randomPoint(random), reflected = plane.reflect(x);
     EXPECT_LT((plane.reflect(reflected) - x).norm(), 10.0 * kRounding) << "twice is the identity";
     EXPECT_NEAR(plane.signedDistance(reflected), -plane.signedDistance(x), 10.0 * kRounding);
     EXPECT_NEAR(plane.coefficients().dot(x.homogeneous()), plane.signedDistance(x), kRounding);
@@ -36,11 +32,9 @@ TEST(ReflectionPlane, AllFormsAreTheSameReflection) {
     EXPECT_LT((a.reflect(x) - reflected).norm(), 10.0 * kRounding);
     const Eigen::Isometry3d motion = randomPose(i);
     EXPECT_LT((plane.transformed(motion).reflect(motion * x) - motion * reflected).norm(), 10.0 * kRounding);
-    const Eigen::Vector3d y = randomPoint(random);
+    const Eigen::Vector3d y = 3.0 * randomPoint(random);
     EXPECT_LT((plane.normalized(y, 2.0).reflect((x - y) / 2.0) - (reflected - y) / 2.0).norm(), 10.0 * kRounding);
-    const ReflectionPlane between = ReflectionPlane::between(x, y);
-    EXPECT_LT((between.reflect(x) - y).norm(), 10.0 * kRounding);
-    EXPECT_LT((between.reflect(y) - x).norm(), 10.0 * kRounding);
+    EXPECT_LT((ReflectionPlane::between(x, y).reflect(x) - y).norm(), 10.0 * kRounding);
   }
   EXPECT_THROW(ReflectionPlane::between(Eigen::Vector3d::Ones(), Eigen::Vector3d::Ones()), std::invalid_argument);
 }
@@ -51,7 +45,7 @@ TEST(ReflectionPlane, HasTheSameBitsAtEveryAddress) {
     Eigen::Vector3d first, second;  // of 24 bytes each: one address is a multiple of 16, the other is not
   } at;
   for (int i = 0; i < 1000; ++i) {
-    at.first = at.second = randomPoint(random);
+    at.first = at.second = 3.0 * randomPoint(random);
     EXPECT_EQ(ReflectionPlane(at.first, 1.0).coefficients(), ReflectionPlane(at.second, 1.0).coefficients());
   }
 }

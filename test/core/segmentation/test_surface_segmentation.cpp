@@ -12,7 +12,6 @@
 #include "core/segmentation/segment_borders.h"
 #include "core/segmentation/surface_patches.h"
 #include "shapes/meshes.h"
-#include "shapes/neighbors.h"
 #include "shapes/threads.h"
 
 namespace pcl_symmetry {
@@ -253,15 +252,19 @@ TEST(SurfaceSegmentation, RefusesBadOptions) {
   EXPECT_THROW(segmentSurface(SurfaceGraph(), {}), std::invalid_argument);
 }
 
+/// A strip of \p size quads of width 1 between y = 0 and y = 1, with the (x, z) that \p at gives for each edge across.
+template <typename At>
+Mesh stripAlong(int size, const At& at) {
+  Mesh mesh;
+  for (int k = 0; k <= size; ++k)
+    for (const float y : {0.0f, 1.0f}) mesh.add({at(k).x(), y, at(k).y()});
+  for (int k = 0; k < size; ++k) mesh.polygons.push_back({2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1});
+  return mesh;
+}
+
 /// A row of unit squares along x, from 0 to \p size.
 SurfaceGraph stripOfSquares(int size) {
-  Points vertices(3, 2 * (size + 1));
-  std::vector<std::vector<int>> polygons;
-  for (int x = 0; x <= size; ++x)
-    for (int y = 0; y < 2; ++y)
-      vertices.col(2 * x + y) = Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), 0.0f);
-  for (int x = 0; x < size; ++x) polygons.push_back({2 * x, 2 * x + 2, 2 * x + 3, 2 * x + 1});
-  return meshGraph(vertices, polygons);
+  return stripAlong(size, [](int x) { return Eigen::Vector2f(static_cast<float>(x), 0.0f); }).graph();
 }
 
 /// A division whose cells are surely parts of their own.
@@ -302,8 +305,8 @@ TEST(Consensus, WithTheMirrorImageIsSymmetric) {
 
 TEST(SmallSegments, JoinTheLongestBorderOrTheClosest) {
   const SurfaceGraph graph = stripOfSquares(8);
-  EXPECT_EQ(joinSmallSegments(graph, {0, 0, 0, 1, 2, 2, 2, 2}, 1.5, 8).size(), 8u);
   const std::vector<int> joined = joinSmallSegments(graph, {0, 0, 0, 1, 2, 2, 2, 2}, 1.5, 8);
+  EXPECT_EQ(joined.size(), 8u);
   EXPECT_EQ(std::set<int>(joined.begin(), joined.end()), (std::set<int>{0, 1}));
   EXPECT_EQ(joinSmallSegments(graph, {0, 0, 1, 1, 2, 2, 3, 3}, 0.0, 8), (std::vector<int>{0, 0, 1, 1, 2, 2, 3, 3}));
   const std::vector<int> two = joinSmallSegments(graph, {0, 0, 1, 1, 2, 2, 3, 3}, 0.0, 2);
@@ -342,13 +345,9 @@ TEST(MirroredLabels, CopiesTheSideThatChangesLess) {
 
 /// A flat strip of ten quads of length 1 along x, folded upwards at x = 7. Its width is 2, but 1 at x = 4.
 SurfaceGraph strip() {
-  test::Mesh mesh;
-  for (int x = 0; x <= 10; ++x) {
-    const float half_width = x == 4 ? 0.5f : 1.0f;
-    for (const float side : {-1.0f, 1.0f})
-      mesh.add({static_cast<float>(std::min(x, 7)), side * half_width, static_cast<float>(std::max(0, x - 7))});
-  }
-  for (int x = 0; x < 10; ++x) mesh.polygons.push_back({2 * x, 2 * x + 2, 2 * x + 3, 2 * x + 1});
+  Mesh mesh = stripAlong(10, [](int x) { return Eigen::Vector2f(std::min(x, 7), std::max(0, x - 7)); });
+  mesh.vertices.row(1) = 2.0f * mesh.vertices.row(1).array() - 1.0f;
+  mesh.vertices.block<1, 2>(1, 2 * 4) *= 0.5f;
   return mesh.graph();
 }
 
@@ -394,8 +393,7 @@ int numPatches(const std::vector<int>& patches) {
 }
 
 TEST(SurfacePatches, AreAsManyAsAskedForAndConnected) {
-  const test::Mesh mesh = test::dumbbell();
-  const SurfaceGraph graph = mesh.graph();
+  const SurfaceGraph graph = test::dumbbell().graph();
   for (const int num_patches : {1, 7, 40}) {
     const std::vector<int> patches = growPatches(graph, num_patches, 0.0f);
     EXPECT_EQ(numPatches(patches), num_patches);
@@ -406,12 +404,7 @@ TEST(SurfacePatches, AreAsManyAsAskedForAndConnected) {
 TEST(SurfacePatches, BordersPreferConcaveEdges) {
   // Four quads in a row, folded upwards behind the first. Which side of an open strip is outward is chance: the fold is
   // made concave below.
-  test::Mesh mesh;
-  for (int x = 0; x <= 4; ++x)
-    for (const float y : {0.0f, 1.0f})
-      mesh.add({static_cast<float>(std::min(x, 1)), y, static_cast<float>(std::max(0, x - 1))});
-  for (int x = 0; x < 4; ++x) mesh.polygons.push_back({2 * x, 2 * x + 2, 2 * x + 3, 2 * x + 1});
-  SurfaceGraph graph = mesh.graph();
+  SurfaceGraph graph = stripAlong(4, [](int x) { return Eigen::Vector2f(std::min(x, 1), std::max(0, x - 1)); }).graph();
   for (SurfaceGraph::Edge& edge : graph.edges) edge.concavity = std::abs(edge.concavity);
   const std::vector<int> patches = growPatches(graph, 2, 100.0f);
   EXPECT_NE(patches[0], patches[1]);
