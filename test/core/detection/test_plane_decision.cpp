@@ -37,8 +37,7 @@ TEST(PlaneFit, EachStageComesNearer) {
   const double at_start = candidates[0].plane.angleTo(exact);
   candidates = box.fit.refineCoarsely(candidates, PlaneGrid(box.options.expert, box.edt.center(), box.edt.radius()));
   ASSERT_EQ(candidates.size(), 1u);
-  const double after_coarse = candidates[0].plane.angleTo(exact);
-  EXPECT_LT(after_coarse, 0.3 * at_start);
+  EXPECT_LT(candidates[0].plane.angleTo(exact), 0.3 * at_start);
   candidates = box.fit.refineFully(box.fit.refineClosely(candidates));
   ASSERT_EQ(candidates.size(), 1u);
   EXPECT_LT(candidates[0].plane.angleTo(exact), 0.1 * kDegree);
@@ -60,7 +59,7 @@ TEST(PlaneFit, DistinctKeepsTheBestOfLikePlanes) {
 }
 
 TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
-  const SearchedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
+  const RefinedBox box;
   const auto shareAt = [&](double offset) {
     return box.measure.measurePlane(box.normalized(Eigen::Vector3d::UnitX(), offset), box.measure.samples())
         .evidence.share;
@@ -76,7 +75,7 @@ TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
 }
 
 TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
-  const SearchedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
+  const RefinedBox box;
   const auto drawn = [](std::uint64_t seed) { return drawSamples(5000, 500, seed); };
   Candidate candidate;
   candidate.plane = box.normalized(Eigen::Vector3d::UnitX(), 0.0);

@@ -13,9 +13,7 @@
 #include "core/detection/standing_object.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/visibility.h"
-#include "shapes/found_planes.h"
 #include "shapes/scans.h"
-#include "shapes/threads.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -33,21 +31,6 @@ TEST(Scans, ACameraThatResolvesTooLittleDecidesNothing) {
   };
   EXPECT_EQ(kindAt(0.04), PlaneKind::Symmetry);
   EXPECT_EQ(kindAt(0.1), PlaneKind::Possible);
-}
-
-TEST(Scans, SameBytesForAnyNumberOfThreads) {
-  const Scan view = scan(blockL(), {2.5, -3.0, 2.0});
-  const Points cloud = view.cloud();
-  const Visibility visibility = view.visibility();
-  const auto detect = [&](int num_threads) {
-    DetectionOptions options;
-    options.num_threads = num_threads;
-    return detectPlanes({cloud, &visibility}, options);
-  };
-  compareThreads(detect, [](const Detection& many, const Detection& one) {
-    EXPECT_EQ(many.map.values, one.map.values);
-    expectSamePlanes(many.planes, one.planes);
-  });
 }
 
 bool hasSymmetry(const Detection& detection) {
@@ -116,13 +99,9 @@ Visibility seenFromAbove(const Points& points) {
 const Eigen::Vector4d kTable(0.0, 0.0, 1.0, 0.0), kWall(1.0, 0.0, 0.0, 0.0);
 
 /// A plane whose normal is this far from the vertical, degrees, turned about it.
-SymmetryPlane planeAt(double angle, double turn, double confidence) {
-  const double a = angle * kPi / 180.0, t = turn * kPi / 180.0;
-  SymmetryPlane plane(
-      ReflectionPlane(Eigen::Vector3d(std::sin(a) * std::cos(t), std::sin(a) * std::sin(t), std::cos(a)), 0.5));
-  plane.kind = PlaneKind::Symmetry;
-  plane.confidence = confidence;
-  return plane;
+ReflectionPlane planeAt(double angle, double turn) {
+  const double a = angle * kDegree, t = turn * kDegree;
+  return {{std::sin(a) * std::cos(t), std::sin(a) * std::sin(t), std::cos(a)}, 0.5};
 }
 
 TEST(StandingObject, PlanesSlantWhereTheyAreNeitherUprightNorLevel) {
@@ -130,10 +109,10 @@ TEST(StandingObject, PlanesSlantWhereTheyAreNeitherUprightNorLevel) {
   const auto normals = supportNormals(points, seenFromAbove(points).withSupport(kTable, 0.0));
   ASSERT_EQ(normals.size(), 1u);
   for (const double angle : {0.0, 4.0, 86.0, 90.0, 94.0, 176.0})
-    for (const double turn : {0.0, 50.0}) EXPECT_FALSE(isSlanted(planeAt(angle, turn, 0.9), normals)) << angle;
+    for (const double turn : {0.0, 50.0}) EXPECT_FALSE(isSlanted(planeAt(angle, turn), normals)) << angle;
   for (const double angle : {6.0, 45.0, 84.0, 96.0, 150.0})
-    for (const double turn : {0.0, 50.0}) EXPECT_TRUE(isSlanted(planeAt(angle, turn, 0.9), normals)) << angle;
-  EXPECT_FALSE(isSlanted(planeAt(45.0, 0.0, 0.9), {})) << "nothing carries it";
+    for (const double turn : {0.0, 50.0}) EXPECT_TRUE(isSlanted(planeAt(angle, turn), normals)) << angle;
+  EXPECT_FALSE(isSlanted(planeAt(45.0, 0.0), {})) << "nothing carries it";
 }
 
 TEST(StandingObject, ItStandsOnTheNearestSupport) {
@@ -147,8 +126,8 @@ TEST(StandingObject, ItStandsOnTheNearestSupport) {
   const auto both =
       supportNormals(at_the_wall, seenFromAbove(at_the_wall).withSupport(kWall, 0.0).withSupport(kTable, 0.0));
   ASSERT_EQ(both.size(), 2u);
-  EXPECT_FALSE(isSlanted(planeAt(90.0, 45.0, 0.9), both)) << "upright, and askew to the wall";
-  EXPECT_TRUE(isSlanted(planeAt(45.0, 45.0, 0.9), both));
+  EXPECT_FALSE(isSlanted(planeAt(90.0, 45.0), both)) << "upright, and askew to the wall";
+  EXPECT_TRUE(isSlanted(planeAt(45.0, 45.0), both));
   EXPECT_TRUE(supportNormals(points, seenFromAbove(points)).empty());
 }
 
@@ -220,8 +199,7 @@ TEST(DecideByUprightBox, OfWhatThePictureCutsOffIsPossible) {
                             0.1f + 0.1f * static_cast<float>(i / 81));
     if (std::atan2(x.x() + 6.0f, x.y() + 3.0f) > 1.13f) kept.push_back(x);
   }
-  Points points(3, kept.size());
-  for (std::size_t i = 0; i < kept.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = kept[i];
+  const Eigen::Map<const Points> points(kept[0].data(), 3, static_cast<Eigen::Index>(kept.size()));
   const auto kind = [&](const Eigen::Vector3d& viewpoint) {
     const Visibility seen = Visibility::ofScene(points, viewpoint)->withSupport(kTable, 0.0);
     Detection found;
@@ -241,10 +219,8 @@ TEST(Scans, FewSamplesOfRefinementAreEnoughForNumbers) {
   DetectionOptions options;
   options.approximate = true;
   options.expert.num_refine_samples = 10;
-  for (const SymmetryPlane& plane : detectPlanes({cloud, &seen}, options).planes) {
-    EXPECT_TRUE(std::isfinite(plane.confidence));
-    EXPECT_TRUE(std::isfinite(plane.support));
-  }
+  for (const SymmetryPlane& plane : detectPlanes({cloud, &seen}, options).planes)
+    EXPECT_TRUE(std::isfinite(plane.confidence) && std::isfinite(plane.support));
 }
 
 }  // namespace

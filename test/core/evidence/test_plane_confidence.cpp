@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -145,13 +144,9 @@ TEST(PlaneConfidence, IsAProbabilityEverywhere) {
                 evidence.unknown = unknown;
                 const double confidence = planeConfidence(evidence);
                 const ShareInterval interval = shareInterval(evidence);
-                ASSERT_TRUE(std::isfinite(confidence)) << support << " " << share;
-                ASSERT_GE(confidence, 0.0);
-                ASSERT_LE(confidence, 1.0);
-                ASSERT_GE(interval.low, 0.0);
-                ASSERT_LE(interval.low, share);
-                ASSERT_GE(interval.high, share);
-                ASSERT_LE(interval.high, 1.0);
+                ASSERT_TRUE(confidence >= 0.0 && confidence <= 1.0) << confidence << ": " << support << " " << share;
+                ASSERT_TRUE(0.0 <= interval.low && interval.low <= share) << interval.low;
+                ASSERT_TRUE(share <= interval.high && interval.high <= 1.0) << interval.high;
               }
 }
 
@@ -260,10 +255,9 @@ TEST(PlaneSupport, IsOneOnTheSurfaceAndFallsOffIt) {
   Points lattice(3, 41 * 41);
   for (int i = 0; i < 41 * 41; ++i) lattice.col(i) << 0.1f * (i % 41 - 20), 0.1f * (i / 41 - 20), 0.0f;
   const double radius = boundingBall(lattice).radius;
-  const ReflectionPlane plane(Eigen::Vector3d::UnitX(), 0.0);
   const auto supportAt = [&](double x, double z) {
     const Points point = Eigen::Vector3d(x, 0.03, z).cast<float>();
-    return planeSupport(point, lattice, {plane}, nullptr, 1)[0][0];
+    return planeSupport(point, lattice, {kAcrossX}, nullptr, 1)[0][0];
   };
   EXPECT_EQ(supportAt(0.97, 0.0), 1.0f);
   EXPECT_EQ(supportAt(0.97, 0.009 * radius), 1.0f);
@@ -279,14 +273,11 @@ TEST(PlaneSupport, OfASymmetryIsThatOfASecondSample) {
   const Points points = shape.cloud();
   const auto supports = planeSupport(points, points, shape.planes, nullptr, 1);
   ASSERT_EQ(supports.size(), shape.planes.size());
-  for (const std::vector<float>& support : supports) {
-    const double mean = std::accumulate(support.begin(), support.end(), 0.0) / static_cast<double>(support.size());
-    EXPECT_GT(mean, 1.0 - 1.0 / 130.0);
-  }
+  for (const std::vector<float>& support : supports) EXPECT_GT(meanOf(support), 1.0 - 1.0 / 130.0);
   EXPECT_EQ(planeSupport(points, points, shape.planes, nullptr, 8), supports);
   EXPECT_EQ(planeSupport(points, points, {shape.planes[1]}, nullptr, 1)[0], supports[1]) << "as one by one";
   const std::vector<float> wrong = planeSupport(points, points, {ReflectionPlane({1.0, 1.0, 0.0}, 0.0)}, nullptr, 1)[0];
-  EXPECT_LT(std::accumulate(wrong.begin(), wrong.end(), 0.0) / static_cast<double>(wrong.size()), 0.7);
+  EXPECT_LT(meanOf(wrong), 0.7);
 }
 
 }  // namespace

@@ -31,9 +31,8 @@ TEST(ClosestPointSearch, FindsWhatBruteForceFinds) {
   ASSERT_EQ(indices.size(), 500u);
   ASSERT_EQ(sq_distances.size(), 500u);
   for (Eigen::Index q = 0; q < queries.cols(); ++q) {
-    std::vector<float> expected(points.cols());
-    for (Eigen::Index i = 0; i < points.cols(); ++i) expected[i] = (points.col(i) - queries.col(q)).squaredNorm();
-    std::vector<float> sorted = expected;
+    const Eigen::RowVectorXf expected = (points.colwise() - queries.col(q)).colwise().squaredNorm();
+    Eigen::RowVectorXf sorted = expected;
     std::sort(sorted.begin(), sorted.end());
     for (int k = 0; k < kNum; ++k) {
       // The same sum of three squares, added in another order at most.
@@ -48,9 +47,7 @@ TEST(ClosestPointSearch, FindsWithinTheLimitWhateverWasGuessed) {
   AskedSearch plain;  // only search(): searchWithin() is that of the base class
   const Points points = asymmetricBlob(700, 2).cloud();
   const Points queries = asymmetricBlob(100, 3).cloud();
-  std::vector<int> closest;
-  std::vector<float> closest_sq;
-  makeFlannSearch(points)->search(queries, 1, closest, closest_sq);
+  const auto [closest, closest_sq] = closestPoints(*makeFlannSearch(points), queries, 1);
   std::vector<float> sorted = closest_sq;
   std::sort(sorted.begin(), sorted.end());
   const float limit = sorted[50];
@@ -114,8 +111,7 @@ Points queriesFor(const Points& points) {
   Points queries(3, 4 * points.cols());
   for (Eigen::Index i = 0; i < queries.cols(); ++i) {
     const float off = i % 4 == 0 ? 0.0f : extent * std::pow(0.1f, static_cast<float>(i % 4 - 1));
-    const Eigen::Vector3f move(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
-    queries.col(i) = points.col(i / 4) + off * move;
+    queries.col(i) = points.col(i / 4) + 0.5f * off * randomPoint(random).cast<float>();
   }
   return queries;
 }
@@ -223,10 +219,7 @@ TEST(NeighborWalk, KeepsTheLimitAndTheExactSearch) {
   int num_within = 0;
   for (std::size_t i = 0; i < within.size(); ++i) {
     num_within += within[i] >= 0 ? 1 : 0;
-    if (within[i] >= 0)
-      EXPECT_LE(sq_distances[i], kLimit);
-    else
-      EXPECT_EQ(sq_distances[i], std::numeric_limits<float>::infinity());
+    EXPECT_TRUE(within[i] >= 0 ? sq_distances[i] <= kLimit : std::isinf(sq_distances[i])) << sq_distances[i];
   }
   EXPECT_GT(num_within, 0);
   EXPECT_LT(num_within, 2000);
@@ -242,7 +235,7 @@ TEST(ClosestPointGrid, IsAsExactAsItsCells) {
   const double cell = 2.0 * 1.25 * boundingBall(points).radius / 32;
   RandomStream random(3);
   for (int i = 0; i < 1000; ++i) {
-    const Eigen::Vector3f x(1.5 * symmetric(random), 1.5 * symmetric(random), 1.5 * symmetric(random));
+    const Eigen::Vector3f x = (1.5 * randomPoint(random)).cast<float>();
     const float least = std::sqrt((points.colwise() - x).colwise().squaredNorm().minCoeff());
     const float found = (points.col(grid.closest(x)) - x).norm();
     // x and its cell's center are half a diagonal apart at most; what the sweeps miss is far less than a cell.

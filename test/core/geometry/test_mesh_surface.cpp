@@ -80,22 +80,12 @@ TEST(SampleTriangles, SpreadsPointsByArea) {
   const Points vertices = (Points(3, 5) << 0, 2, 0, 6, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1).finished();
   const Points points = sampleTriangles(vertices, {{0, 1, 2}, {0, 3, 4}}, 4000);
   ASSERT_EQ(points.cols(), 4000);
-  int num_first = 0;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3f p = points.col(i);
-    const bool first = i < 1000;  // in the order of the triangles
-    num_first += first;
-    if (first) {
-      EXPECT_EQ(p.z(), 0.0f);
-      EXPECT_LE(0.5f * p.x() + p.y(), 1.0f + 1e-6f);
-      mean += p.cast<double>() / 1000.0;
-    } else {
-      EXPECT_EQ(p.y(), 0.0f);
-      EXPECT_LE(p.x() / 6.0f + p.z(), 1.0f + 1e-6f);
-    }
-    EXPECT_GE(p.minCoeff(), 0.0f);
-  }
+  EXPECT_GE(points.minCoeff(), 0.0f);
+  const Points first = points.leftCols(1000), second = points.rightCols(3000);  // in the order of the triangles
+  EXPECT_TRUE(first.row(2).isZero(0.0f) && second.row(1).isZero(0.0f));
+  EXPECT_LE((0.5f * first.row(0) + first.row(1)).maxCoeff(), 1.0f + 1e-6f);
+  EXPECT_LE((second.row(0) / 6.0f + second.row(2)).maxCoeff(), 1.0f + 1e-6f);
+  const Eigen::Vector3d mean = first.cast<double>().rowwise().mean();
   // Uniform in the triangle: its centroid, with standard deviations of 2 / sqrt(18 * 1000) and half of it.
   EXPECT_NEAR(mean.x(), 2.0 / 3.0, 4.0 * 0.015);
   EXPECT_NEAR(mean.y(), 1.0 / 3.0, 4.0 * 0.0075);

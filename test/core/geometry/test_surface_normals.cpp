@@ -54,8 +54,8 @@ TEST(LocalGeometry, FitsTheAxisOfLeastSpread) {
   std::vector<float> sq_distances;
   search->search(points, 9, nearest, sq_distances);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    Eigen::Matrix3Xd offsets(3, 9);
-    for (int k = 0; k < 9; ++k) offsets.col(k) = points.col(nearest[i * 9 + k]).cast<double>();
+    const Eigen::Map<const Eigen::VectorXi> own(&nearest[i * 9], 9);
+    Eigen::Matrix3Xd offsets = points(Eigen::all, own).cast<double>();
     offsets.colwise() -= offsets.rowwise().mean().eval();
     const SymmetricEigen<Eigen::Matrix3d> solver(offsets * offsets.transpose());
     // Floats round the moments by 1e-6 of the largest: axes of nearly equal moments are free by that.
@@ -165,11 +165,7 @@ TEST(PrincipalAxes, PlanesLieAcrossThemThroughTheCenter) {
 }
 
 Points boxOf(const Eigen::Vector3f& size) {
-  Points points(3, 1000);
-  RandomStream random(1);
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    for (int k = 0; k < 3; ++k) points(k, i) = size[k] * static_cast<float>(random.uniform() - 0.5);
-  return points;
+  return 0.5f * (size.asDiagonal() * Points::Random(3, 1000));
 }
 
 TEST(Thinness, IsThatOfTheSizesBeyondTheTolerances) {
@@ -197,9 +193,7 @@ TEST(EvenDirections, LieAboutTheOriginAndApartFromEachOther) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < directions.size(); ++i) {
       EXPECT_NEAR(directions[i].norm(), 1.0, 1e-15);
-      if (i > 0) {
-        EXPECT_LT(directions[i].z(), directions[i - 1].z());
-      }
+      EXPECT_TRUE(i == 0 || directions[i].z() < directions[i - 1].z()) << i;
       sum += directions[i];
       // A square lattice of this density has its points sqrt(4 pi / count) apart; the spiral keeps three quarters.
       for (std::size_t j = 0; j < i; ++j)

@@ -14,7 +14,6 @@
 #include "core/matching/pose_screening.h"
 #include "core/matching/view_code.h"
 #include "shapes/scans.h"
-#include "shapes/shapes.h"
 #include "shapes/threads.h"
 
 namespace pcl_symmetry {
@@ -71,12 +70,11 @@ Points halfHidden(const Eigen::Vector3d& half, double scale) {
 double leastMeanDistance(const Points& scan, const std::vector<Eigen::Isometry3d>& poses, const Points& shape) {
   double least = std::numeric_limits<double>::infinity();
   for (const Eigen::Isometry3d& pose : poses) {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < scan.cols(); ++i) {
-      const Eigen::Vector3f x = (pose * scan.col(i).cast<double>()).cast<float>();
-      sum += (shape.colwise() - x).colwise().norm().minCoeff();
-    }
-    least = std::min(least, sum / static_cast<double>(scan.cols()));
+    std::vector<double> distances;
+    const Points placed = test::moved(scan, pose);
+    for (Eigen::Index i = 0; i < placed.cols(); ++i)
+      distances.push_back((shape.colwise() - placed.col(i)).colwise().norm().minCoeff());
+    least = std::min(least, test::meanOf(distances));
   }
   return least;
 }
@@ -147,12 +145,9 @@ TEST(PointPairIndex, DegenerateShapesAreFoundByNoPair) {
   EXPECT_TRUE(PointPairIndex({}, 1).nearest(scan).empty());
 }
 
-Points pointsOfBox(const Eigen::Vector3d& half, int count, std::uint64_t seed) {
-  return test::box(half, count, test::Sampling::Random, seed).cloud();
-}
-
 ScreenedSurface screenedBox(const Eigen::Vector3d& half) {
-  return ScreenedSurface(evenSurfacePoints(pointsOfBox(half, 5000, 1), kMatching.num_screened_points, 1));
+  return ScreenedSurface(
+      evenSurfacePoints(test::box(half, 5000, test::Sampling::Random, 1).cloud(), kMatching.num_screened_points, 1));
 }
 
 const Eigen::Vector3d kBoxes[] = {{1.0, 0.6, 0.3}, {0.8, 0.8, 0.5}, {1.2, 0.2, 0.4}};
@@ -164,7 +159,8 @@ Eigen::Isometry3d scannedBox(double scale) {
 /// What is on one side of an oblique plane: the ends of the box and other corners are missing.
 SurfacePoints scanOfHalfABox(const Eigen::Vector3d& half, double scale) {
   const auto is_kept = [](const Eigen::Vector3f& x) { return x.x() + 0.3f * x.y() - 0.4f * x.z() > 0.0f; };
-  return evenSurfacePoints(scaledPart(pointsOfBox(half, 6000, 2), scale, scannedBox(scale).inverse(), is_kept), 120, 1);
+  const Points box = test::box(half, 6000, test::Sampling::Random, 2).cloud();
+  return evenSurfacePoints(scaledPart(box, scale, scannedBox(scale).inverse(), is_kept), 120, 1);
 }
 
 /// A box is the same after half turns about its axes.
@@ -180,13 +176,10 @@ double angleUpToHalfTurns(const Eigen::Matrix3d& rotation) {
 /// Poses anywhere, behind the given ones.
 std::vector<Eigen::Isometry3d> amongOthers(std::vector<Eigen::Isometry3d> poses, int count, double scale) {
   RandomStream random(5);
-  const auto direction = [&] {
-    return Eigen::Vector3d(Eigen::Vector3d::NullaryExpr([&] { return 2.0 * random.uniform() - 1.0; }));
-  };
   for (int i = 0; i < count; ++i) {
     Eigen::Isometry3d pose = scannedBox(scale);
-    pose.prerotate(Eigen::AngleAxisd(0.8 + 2.0 * random.uniform(), direction().normalized()));
-    pose.pretranslate(Eigen::Vector3d(0.5 * scale * direction()));
+    pose.prerotate(Eigen::AngleAxisd(0.8 + 2.0 * random.uniform(), test::randomDirection(random)));
+    pose.pretranslate(Eigen::Vector3d(0.5 * scale * test::randomPoint(random)));
     poses.insert(poses.begin(), pose);
   }
   return poses;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -34,10 +33,12 @@ Points knobbedBox(const Eigen::Vector3d& half, const Eigen::Vector3d& knob, int 
                       surface(Eigen::Vector3d::Constant(0.05), num_points / 10).colwise() + knob.cast<float>());
 }
 
-double distance(const std::vector<float>& a, const std::vector<float>& b) {
-  double sq = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sq += std::pow(a[i] - b[i], 2);
-  return std::sqrt(sq);
+Eigen::Map<const Eigen::VectorXf> vectorOf(const std::vector<float>& values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
+float distance(const std::vector<float>& a, const std::vector<float>& b) {
+  return (vectorOf(a) - vectorOf(b)).norm();
 }
 
 const Eigen::Matrix3d kOwnAxes = Eigen::Matrix3d::Identity();
@@ -46,7 +47,7 @@ TEST(ShapeSignature, HasUnitNormWhateverUnitAndPlace) {
   const Points box = knobbedBox({1.0, 0.7, 0.4}, {1.0, 0.5, 0.3}, 20'000, 1);
   const auto signature = shapeSignature(box, kOwnAxes);
   ASSERT_EQ(signature.size(), static_cast<std::size_t>(kSignatureSize));
-  EXPECT_NEAR(std::inner_product(signature.begin(), signature.end(), signature.begin(), 0.0), 1.0, 1e-4);
+  EXPECT_NEAR(vectorOf(signature).squaredNorm(), 1.0, 1e-4);
   for (const float unit : {1e-12f, 1e12f}) {
     const Points moved = (unit * box).colwise() + unit * Eigen::Vector3f(3.0f, -2.0f, 1.0f);
     EXPECT_LT(distance(shapeSignature(moved, kOwnAxes), signature), 0.1);
@@ -107,9 +108,8 @@ Eigen::MatrixXf boxSignatures(int count) {
     RandomStream random(100 + static_cast<std::uint64_t>(i));
     const Eigen::Vector3d half(0.3 + random.uniform(), 0.3 + random.uniform(), 0.3 + random.uniform());
     const Eigen::Vector3d knob = half.cwiseProduct(Eigen::Vector3d(1.0, random.uniform(), random.uniform()));
-    const auto signature =
-        shapeSignature(knobbedBox(half, knob, 3000, 7 + static_cast<std::uint64_t>(i)), Eigen::Matrix3d::Identity());
-    signatures.col(i) = Eigen::Map<const Eigen::VectorXf>(signature.data(), kSignatureSize);
+    signatures.col(i) =
+        vectorOf(shapeSignature(knobbedBox(half, knob, 3000, 7 + static_cast<std::uint64_t>(i)), kOwnAxes));
   }
   return signatures;
 }
@@ -150,8 +150,7 @@ TEST(SignatureProjection, IsTheSameWithAnyNumberOfThreadsAndAfterStorage) {
 TEST(SignatureProjection, TellsApartWhatIsUnlikeAllOfFewShapes) {
   const SignatureProjection projection = SignatureProjection::fit(boxSignatures(3));
   const auto form = [&](const Eigen::Vector3d& half) -> Eigen::VectorXf {
-    const auto signature = shapeSignature(knobbedBox(half, half, 3000, 1), kOwnAxes);
-    return projection.project(Eigen::Map<const Eigen::VectorXf>(signature.data(), kSignatureSize));
+    return projection.project(vectorOf(shapeSignature(knobbedBox(half, half, 3000, 1), kOwnAxes)));
   };
   EXPECT_LT(form({2.0, 0.05, 0.05}).dot(form({1.0, 1.0, 0.02})), 0.5) << "a rod and a plate";
 }

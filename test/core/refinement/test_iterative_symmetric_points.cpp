@@ -204,15 +204,12 @@ TEST(IterateSymmetricPoints, ReportsWhatItSaw) {
 
 TEST(IterateSymmetricPoints, LeavesTheFreeDirectionsOfASphere) {
   // Pairs on a sphere say nothing about the direction of a plane through its center: only the offset may move.
-  const Points points = sphere(3000, 5).cloud();
-  const auto search = makeFlannSearch(points);
-  const Eigen::Vector3d normal = Eigen::Vector3d(1.0, 2.0, 2.0) / 3.0;
-  const ReflectionPlane start(normal, 0.08);
-  const IspSurface surface{points, points, *search};  // the normals of a sphere are its points
-  std::vector<int> all(points.cols());
-  std::iota(all.begin(), all.end(), 0);
+  const Surface ball(sphere(3000, 5).cloud());
+  const IspSurface surface{ball.points, ball.points, *ball.search};  // the normals of a sphere are its points
+  const ReflectionPlane start({1.0, 2.0, 2.0}, 3.0 * 0.08);
   ReflectionPlane plane = start;
-  for (int i = 0; i < 10; ++i) plane = iterateSymmetricPoints(surface, all, plane, 0.3, IspUpdate::PointToPlane).plane;
+  for (int i = 0; i < 10; ++i)
+    plane = iterateSymmetricPoints(surface, ball.all, plane, 0.3, IspUpdate::PointToPlane).plane;
   // Samples 0.065 apart, 3000 of them; an unbounded Gauss-Newton step would turn by its limit of 0.2 at every turn.
   EXPECT_LT(plane.angleTo(start), 0.02);
   EXPECT_LT(std::abs(plane.offset()), 0.01);

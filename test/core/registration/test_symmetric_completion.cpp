@@ -1,11 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 
 #include "pcl_symmetry/core/symmetric_completion.h"
 #include "shapes/scans.h"
-#include "shapes/shapes.h"
 
 namespace {
 
@@ -15,18 +16,16 @@ using namespace pcl_symmetry::test;
 const ReflectionPlane kMiddle(Eigen::Vector3d::UnitX(), 0.0);
 
 TEST(SymmetricCompletion, AddsTheHiddenHalfOfAScan) {
-  const BlockObject object = blockChair();
-  const Scan scan = test::scan(object, {6.0, -3.0, 3.0});
+  const Scan scan = test::scan(blockChair(), {6.0, -3.0, 3.0});
   const Points points = scan.cloud();
   const Visibility visibility = scan.visibility();
   const std::vector<int> completing = completingPoints(points, kMiddle, {}, &visibility);
   ASSERT_GT(completing.size(), static_cast<std::size_t>(points.cols()) / 20) << "the left side was not seen";
   ASSERT_LT(completing.size(), static_cast<std::size_t>(points.cols())) << "the top of the seat was";
-  for (std::size_t k = 1; k < completing.size(); ++k) EXPECT_LT(completing[k - 1], completing[k]);
-  for (const int i : completing) {
-    const Eigen::Vector3d reflected = kMiddle.reflect(points.col(i).cast<double>());
-    EXPECT_GT(visibility.depthBehind(reflected), -0.2) << "not in front of what was seen";
-  }
+  EXPECT_EQ(std::adjacent_find(completing.begin(), completing.end(), std::greater_equal<int>()), completing.end());
+  for (const int i : completing)
+    EXPECT_GT(visibility.depthBehind(kMiddle.reflect(points.col(i).cast<double>())), -0.2)
+        << "not in front of what was seen";
 }
 
 TEST(SymmetricCompletion, AddsNothingToAWhole) {
@@ -36,8 +35,7 @@ TEST(SymmetricCompletion, AddsNothingToAWhole) {
 
 TEST(SymmetricCompletion, AddsNothingInFreeSpace) {
   // A plane beside the object that the scanner looked at from the front: its reflection would stand in plain view.
-  const BlockObject object = blockBox();
-  const Scan scan = test::scan(object, {0.0, -6.0, 0.0});
+  const Scan scan = test::scan(blockBox(), {0.0, -6.0, 0.0});
   const Points points = scan.cloud();
   const std::optional<Visibility> visibility = Visibility::fromPoints(points, scan.viewpoint);
   ASSERT_TRUE(visibility);
@@ -58,15 +56,12 @@ TEST(SymmetricCompletion, TakesAnyNumberOfPoints) {
 
 TEST(SymmetricCompletion, RefusesOptionsOutOfRange) {
   const Points points = box(100, Sampling::Random, 1).cloud();
-  CompletionOptions options;
-  options.overlap = 0.0;
-  EXPECT_THROW(completingPoints(points, kMiddle, options), std::invalid_argument);
-  options = {};
-  options.margin = -1.0;
-  EXPECT_THROW(completingPoints(points, kMiddle, options), std::invalid_argument);
-  options = {};
-  options.num_threads = -1;
-  EXPECT_THROW(completingPoints(points, kMiddle, options), std::invalid_argument);
+  CompletionOptions overlap, margin, threads;
+  overlap.overlap = 0.0;
+  margin.margin = -1.0;
+  threads.num_threads = -1;
+  for (const CompletionOptions& options : {overlap, margin, threads})
+    EXPECT_THROW(completingPoints(points, kMiddle, options), std::invalid_argument);
 }
 
 }  // namespace

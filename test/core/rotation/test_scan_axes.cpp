@@ -16,8 +16,8 @@
 #include "pcl_symmetry/core/symmetric_completion.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/visibility.h"
+#include "shapes/found_planes.h"
 #include "shapes/scans.h"
-#include "shapes/shapes.h"
 #include "shapes/threads.h"
 #include "shapes/turning_shapes.h"
 
@@ -76,23 +76,18 @@ TEST(RotationConfidence, OfAHalfTurnFallsWithEachSignAgainstIt) {
        {&HalfTurnEvidence::stiffness, 1e-9},
        {&HalfTurnEvidence::planes_off_share, 0.3},
        {&HalfTurnEvidence::conflicts_with_best, 1.0}}};
-  for (std::size_t k = 0; k < against.size(); ++k) {
-    const auto [sign, worst] = against[k];
+  for (const auto& [sign, worst] : against) {
     const double best = clearEvidence().*sign;
     double last = clear;
     for (int step = 1; step <= 5; ++step) {
       HalfTurnEvidence signs = clearEvidence();
       signs.*sign = best + (worst - best) * step / 5;
       const double confidence = confidenceOf(2, 0.9, 0.0, 0.0, 0.4, signs);
-      EXPECT_LE(confidence, last) << "sign " << k << ", step " << step;
+      EXPECT_LE(confidence, last) << "toward " << worst << ", step " << step;
       last = confidence;
     }
-    EXPECT_LT(last, 0.95 * clear) << "sign " << k;
+    EXPECT_LT(last, 0.95 * clear) << "toward " << worst;
   }
-}
-
-TurningShape box() {
-  return boxShape("box", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2);
 }
 
 /// A scan of a shape, and what it says of half turns.
@@ -129,7 +124,7 @@ struct Scanned {
 const Eigen::Vector3d kCorner(2.0, 3.0, 5.0);
 
 TEST(HalfTurnEvidence, AHalfTurnOfABoxHasPlanesAndStaysInItsPlace) {
-  const Scanned scanned(box(), kCorner);
+  const Scanned scanned(boxShape(), kCorner);
   const SymmetryRotation right = scanned.rotation(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
   const SymmetryRotation wrong = scanned.rotation({0.5, 0.0, 0.0}, {0.3, 0.0, 1.0});
   const std::vector<HalfTurnEvidence> signs = halfTurnEvidence(scanned.evidence, {right, wrong});
@@ -156,7 +151,7 @@ TEST(HalfTurnEvidence, AFlatSideHoldsNoLineAndABoxDoes) {
     return halfTurnEvidence(scanned.evidence, {scanned.rotation(Eigen::Vector3d::Zero(), direction)})[0].stiffness;
   };
   EXPECT_LT(stiffness(flat, Eigen::Vector3d::UnitX()), 1e-3) << "it slides both ways along itself";
-  EXPECT_GT(stiffness(Scanned(box(), kCorner), Eigen::Vector3d::UnitZ()), 1e-2);
+  EXPECT_GT(stiffness(Scanned(boxShape(), kCorner), Eigen::Vector3d::UnitZ()), 1e-2);
 }
 
 TEST(MarginOf, IsTheLeastMarginToALimit) {
@@ -171,7 +166,7 @@ TEST(MarginOf, IsTheLeastMarginToALimit) {
 }
 
 TEST(WithRoundAxes, AddsWhatOnlyRotationsShowAndNothingContradicts) {
-  const Scanned scanned(box(), kCorner);
+  const Scanned scanned(boxShape(), kCorner);
   SymmetryRotation round{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
   round.support = round.confidence = 0.9;
   const auto numAxes = [&](const SymmetryRotation& rotation) {
@@ -193,7 +188,7 @@ TEST(WithRoundAxes, AddsWhatOnlyRotationsShowAndNothingContradicts) {
 
 TEST(RotationEvidence, ALineBesideTheAxisComesBackToIt) {
   for (const Eigen::Vector3d& viewpoint : {kCorner, Eigen::Vector3d(5.0, 1.0, 3.0), Eigen::Vector3d(1.0, -2.0, 5.0)}) {
-    const Scanned scanned(box(), viewpoint);
+    const Scanned scanned(boxShape(), viewpoint);
     const SymmetryRotation beside = scanned.rotation({0.03, -0.03, 0.0}, {0.03, 0.02, 1.0});
     const Line3d line = scanned.evidence.refineLineClosely(scanned.lineOf(beside), {kPi});
     const Eigen::Vector3d center = -scanned.cloud.center / scanned.cloud.scale;
@@ -279,11 +274,18 @@ TEST(ScanAxes, ABallHasACenterAndADomeOneAxis) {
 TEST(ScanAxes, ThreadsDoNotMatterAndTurnsCanBeLeftOut) {
   const SeenFromOneSide scan = seenFrom(prismShape(5, 0.4), {2.0, 3.0, 5.0});
   DetectionOptions options;
-  compareThreads([&](int num_threads) {
-    options.num_threads = num_threads;
-    const Detection found = detectPlanes({scan.points, &*scan.seen}, options);
-    return valuesOf(found.rotations, &SymmetryRotation::point, &SymmetryRotation::confidence);
-  });
+  compareThreads(
+      [&](int num_threads) {
+        options.num_threads = num_threads;
+        return detectPlanes({scan.points, &*scan.seen}, options);
+      },
+      [](const Detection& many, const Detection& one) {
+        EXPECT_EQ(many.map.values, one.map.values);
+        expectSamePlanes(many.planes, one.planes);
+        EXPECT_EQ(valuesOf(many.rotations, &SymmetryRotation::point, &SymmetryRotation::confidence),
+                  valuesOf(one.rotations, &SymmetryRotation::point, &SymmetryRotation::confidence));
+        EXPECT_FALSE(one.planes.empty() || one.rotations.empty());
+      });
   options.rotations = false;
   EXPECT_TRUE(detectPlanes({scan.points, &*scan.seen}, options).rotations.empty());
   EXPECT_TRUE(detectPlanes(scan.points, options).rotations.empty()) << "whole objects have objectSymmetries()";

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "pcl_symmetry/core/closest_point_search.h"
+#include "core/geometry/closest_points.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -23,16 +23,8 @@ GaussianEdtOptions cells(int num_cells) {
   return options;
 }
 
-double distanceTo(const Points& points, const Eigen::Vector3d& x) {
-  double sq_least = std::numeric_limits<double>::max();
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    sq_least = std::min(sq_least, (points.col(i).cast<double>() - x).squaredNorm());
-  return std::sqrt(sq_least);
-}
-
 double definition(const Points& points, const Eigen::Vector3d& x, double sigma) {
-  const double distance = distanceTo(points, x);
-  return std::exp(-distance * distance / (sigma * sigma));
+  return std::exp(-(points.cast<double>().colwise() - x).colwise().squaredNorm().minCoeff() / (sigma * sigma));
 }
 
 /// Every cell against brute force. Coordinates are floats in cells: they are rounded at 2^-24 of numCells(), which
@@ -91,11 +83,11 @@ TEST(GaussianEdt, DefaultsCoverThePointsWithTwoCellsOfSigma) {
     EXPECT_EQ(edt.numCells(), n);
     EXPECT_NEAR(edt.sigma(), 2.0 * edt.cellSize(), 1e-12);
     EXPECT_NEAR(edt.radius() + 2.0 * edt.sigma(), 0.5 * n * edt.cellSize(), 1e-9);
-    EXPECT_NEAR((edt.cellCenter(0) - edt.origin()).norm(), 0.0, 0.0);
+    EXPECT_EQ(edt.cellCenter(0), edt.origin());
     const Eigen::Vector3d middle = 0.5 * (edt.cellCenter(0) + edt.cellCenter(edt.values().size() - 1));
     EXPECT_LT((middle - edt.center()).norm(), 1e-12);
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-      ASSERT_LE((points.col(i).cast<double>() - edt.center()).norm(), edt.radius() * (1.0 + 1e-6));
+    EXPECT_LE((points.cast<double>().colwise() - edt.center()).colwise().norm().maxCoeff(),
+              edt.radius() * (1.0 + 1e-6));
   }
 }
 
@@ -159,13 +151,10 @@ TEST(GaussianEdt, DenseCloudsAreThinned) {
   // of its value with s = 2; edges, seen from inside, lose more.
   const Points points = moved(box(150'000, Sampling::Random, 7), randomPose(1)).cloud();
   const GaussianEdt edt(points, cells(32));
-  const auto search = makeFlannSearch(points);
   const double cell = edt.cellSize(), s = edt.sigma() / cell;
   Points centers(3, edt.values().size() / 5);
   for (Eigen::Index i = 0; i < centers.cols(); ++i) centers.col(i) = edt.cellCenter(5 * i).cast<float>();
-  std::vector<int> indices;
-  std::vector<float> sq_distances;
-  search->search(centers, 1, indices, sq_distances);
+  const std::vector<float> sq_distances = closestPoints(*makeFlannSearch(points), centers, 1).sq_distances;
   double sum = 0.0, sum_expected = 0.0;
   for (Eigen::Index i = 0; i < centers.cols(); ++i) {
     const double distance = std::sqrt(sq_distances[i]) / cell, at_worst = distance + std::sqrt(3.0) / 4.0;

@@ -92,8 +92,8 @@ TEST(PlaneGrid, EveryStepLandsNextDoor) {
     for (std::size_t i = 0; i < g.size(); ++i) {
       const Bin bin = g.bin(i);
       const ReflectionPlane from = g.plane(bin);
-      for (int dt = -1; dt <= 1; ++dt) {
-        for (int dp = -1; dp <= 1; ++dp) {
+      for (int dt = -1; dt <= 1; ++dt)
+        for (int dp = -1; dp <= 1; ++dp)
           for (int dk = -1; dk <= 1; ++dk) {
             const auto to = g.step(bin, dt, dp, dk);
             const bool beyond = bin.radius + dk < 0 || bin.radius + dk >= g.numRadius();
@@ -110,8 +110,6 @@ TEST(PlaneGrid, EveryStepLandsNextDoor) {
             }
             ASSERT_NEAR(error.offset, std::abs(dk) * g.radiusStep(), 1e-12);
           }
-        }
-      }
     }
   }
 }
@@ -187,10 +185,9 @@ TEST(LocalMaxima, APeakAnywhereIsFoundOnce) {
   const std::vector<PlaneGrid> grids = {grid(16, 64, 10), grid(16, 16, 12), grid(5, 12, 9)};
   std::vector<ReflectionPlane> wanted_planes;
   for (const double r : {0.0, -0.37}) {
-    for (const double phi : {0.0, 0.001, -0.02, 1.0, 3.14159, 4.0}) {
+    for (const double phi : {0.0, 0.001, -0.02, 1.0, 3.14159, 4.0})
       for (const double theta : {0.0, 0.01, 0.04, 0.1, 0.2, 0.8, 1.5, 1.5707, 0.5 * kPi, 1.58})
         wanted_planes.push_back(plane(theta, phi, r));
-    }
   }
   for (const PlaneGrid& g : grids) {
     for (const ReflectionPlane& wanted : wanted_planes) {
@@ -318,15 +315,13 @@ double greatest(const SymmetryMap& map, const Eigen::Vector3d& x) {
   return best;
 }
 
-SymmetryMap boxMap(Points& cloud) {
-  cloud = moved(box(4'000, Sampling::Random, 3), randomPose(9)).cloud();
-  const GaussianEdt edt(cloud);
+SymmetryMap boxMap() {
+  const GaussianEdt edt(moved(box(4'000, Sampling::Random, 3), randomPose(9)).cloud());
   return sampledTransform(edt, PlaneGrid(24, 48, 32, edt.center(), edt.radius()));
 }
 
 TEST(PointSymmetry, IsTheGreatestValueOfAPlaneThroughThePoint) {
-  Points cloud;
-  const SymmetryMap map = boxMap(cloud);
+  const SymmetryMap map = boxMap();
   RandomStream random(1);
   Points probes(3, 3'000);
   for (Eigen::Index i = 0; i < probes.cols(); ++i)
@@ -338,8 +333,8 @@ TEST(PointSymmetry, IsTheGreatestValueOfAPlaneThroughThePoint) {
 }
 
 TEST(PointSymmetry, EqualBitsForAnyNumberOfThreads) {
-  Points cloud;
-  const SymmetryMap map = boxMap(cloud);
+  const SymmetryMap map = boxMap();
+  const Points cloud = moved(box(4'000, Sampling::Random, 3), randomPose(9)).cloud();
   compareThreads([&](int num_threads) { return pointSymmetry(map, cloud, num_threads); });
   EXPECT_EQ(pointSymmetry(SymmetryMap(), cloud), std::vector<float>(cloud.cols(), 0.0f));
 }
