@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/base/random.h"
 #include "pcl/clouds.h"
 #include "pcl_symmetry/symmetry_database.h"
 
@@ -15,13 +14,12 @@ using Cloud = SymmetryDatabase::Cloud;
 
 /// A box with a rod on top.
 inline Cloud rodOnBox(const Eigen::Vector3d& half, double rod, const Eigen::Isometry3d& pose, std::uint64_t seed) {
-  Cloud cloud;
+  Points points(3, 5000);
   RandomStream random(seed);
-  const auto side = [&] { return 2.0 * random.uniform() - 1.0; };
   for (int i = 0; i < 5000; ++i) {
-    Eigen::Vector3d x(side(), side(), side());
+    Eigen::Vector3d x = randomPoint(random);
     if (i % 5 == 0) {
-      const double angle = M_PI * side();
+      const double angle = M_PI * symmetric(random);
       x = Eigen::Vector3d(0.1 * std::cos(angle) + 0.5 * half.x(), 0.1 * std::sin(angle),
                           half.z() + rod * random.uniform());
     } else {
@@ -29,10 +27,9 @@ inline Cloud rodOnBox(const Eigen::Vector3d& half, double rod, const Eigen::Isom
       x[axis] = x[axis] < 0.0 ? -1.0 : 1.0;
       x = x.cwiseProduct(half);
     }
-    cloud.push_back({});
-    cloud.back().getVector3fMap() = (pose * x).cast<float>();
+    points.col(i) = (pose * x).cast<float>();
   }
-  return cloud;
+  return *toCloud(points);
 }
 
 inline Cloud ball() {

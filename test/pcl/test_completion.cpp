@@ -4,7 +4,6 @@
 #include <pcl/point_types.h>
 
 #include "pcl/clouds.h"
-#include "shapes/scans.h"
 
 namespace pcl_symmetry {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <random>
 #include <string>
 
 #include "core/base/constants.h"
@@ -54,21 +53,19 @@ TEST(PackedModel, OtherBytesAreRefused) {
 
 /// The side of a cylinder, and at one side of it a box as a handle, which a sixth of the points show.
 Points mug() {
-  constexpr int kNumPoints = 6000;
-  std::mt19937 random(1);
-  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
-  Points points(3, kNumPoints);
-  for (int i = 0; i < kNumPoints; ++i) {
-    const double angle = kPi * uniform(random);
-    points.col(i) << static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), uniform(random);
-    if (i % 6 == 0)
-      points.col(i) << 1.3f + 0.3f * uniform(random), uniform(random) < 0 ? -0.1f : 0.1f, 0.6f * points(2, i);
+  RandomStream random(1);
+  Points points(3, 6000);
+  for (int i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d u = test::randomPoint(random);
+    const Eigen::Vector3d wall(std::cos(kPi * u.x()), std::sin(kPi * u.x()), u.z());
+    const Eigen::Vector3d handle(1.3 + 0.3 * u.x(), u.y() < 0.0 ? -0.1 : 0.1, 0.6 * u.z());
+    points.col(i) = (i % 6 == 0 ? handle : wall).cast<float>();
   }
   return points;
 }
 
 double angleOf(const detail::PosedModel& posed) {
-  return Eigen::AngleAxisd(posed.model.T_model_scan.linear()).angle();
+  return test::angleOf(posed.model.T_model_scan.linear());
 }
 
 /// From a pose with the handle elsewhere no step leads to the true one, as the cylinder fits in both.
@@ -87,22 +84,12 @@ TEST(PosedScan, TriesRotationsAboutTheAxesOfAModel) {
 
 /// A unit sphere seen from z = -5, of which a plate hides the half x < 0.
 TEST(ModelEvidence, WhatHidesAModelDoesNotSpeakAgainstIt) {
-  constexpr int kNumPoints = 12'000;
-  std::mt19937 random(1);
-  std::normal_distribution<float> normal;
-  std::uniform_real_distribution<float> uniform(-1.2f, 1.2f);
-  Points sphere(3, kNumPoints), seen(3, 0), all(3, 0);
-  const auto append = [](Points& points, const Eigen::Vector3f& point) {
-    points.conservativeResize(3, points.cols() + 1);
-    points.rightCols<1>() = point;
-  };
-  for (int i = 0; i < kNumPoints; ++i) {
-    sphere.col(i) = Eigen::Vector3f(normal(random), normal(random), normal(random)).normalized();
-    if (sphere(0, i) > 0.0f && sphere(2, i) < -0.2f) append(seen, sphere.col(i));
-    append(all, {0.5f * uniform(random) - 0.6f, uniform(random), -1.5f});
-  }
-  for (Eigen::Index i = 0; i < seen.cols(); ++i) append(all, seen.col(i));
-  const PosedSurface scan(seen, Visibility::fromPoints(all, {0.0, 0.0, -5.0}), 1, 1), model(sphere, std::nullopt, 1, 1);
+  const Points sphere = test::sphere(12'000, 1).cloud();
+  const Points seen = test::pointsWhere(sphere, [](const Eigen::Vector3f& x) { return x.x() > 0.0f && x.z() < -0.2f; });
+  const Points plate = (Eigen::Vector3f(0.6f, 1.2f, 0.0f).asDiagonal() * Points::Random(3, 12'000)).colwise() +
+                       Eigen::Vector3f(-0.6f, 0.0f, -1.5f);
+  const PosedSurface scan(seen, Visibility::fromPoints(test::joined(plate, seen), {0.0, 0.0, -5.0}), 1, 1),
+      model(sphere, std::nullopt, 1, 1);
   const ModelEvidence right = detail::modelEvidence(scan, model, Eigen::Isometry3d::Identity());
   EXPECT_GT(right.on_model, 0.98);
   EXPECT_NEAR(right.shown, 0.5, 0.1);

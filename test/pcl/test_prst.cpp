@@ -16,13 +16,13 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 Cloud::Ptr boxCloud(const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity(), double unit = 1.0) {
-  test::Shape box = test::box(6000, test::Sampling::Random, 5);
-  box.points *= unit;
-  return test::toCloud(test::moved(box, pose));
+  return test::toCloud(test::moved(test::scaled(test::box(6000, test::Sampling::Random, 5), unit), pose));
 }
 
-pcl::PointCloud<PRSTSignature32768> describe(const Cloud::ConstPtr& cloud, bool use_input_axes) {
-  PRSTEstimation<pcl::PointXYZ> estimation;
+template <typename PointT = pcl::PointXYZ>
+pcl::PointCloud<PRSTSignature32768> describe(const typename pcl::PointCloud<PointT>::ConstPtr& cloud,
+                                             bool use_input_axes) {
+  PRSTEstimation<PointT> estimation;
   estimation.setUseInputAxes(use_input_axes);
   estimation.setInputCloud(cloud);
   pcl::PointCloud<PRSTSignature32768> output;
@@ -104,13 +104,7 @@ TEST(PRSTEstimation, HonorsIndicesAndWorksThroughTheBaseClass) {
 
 TEST(PRSTEstimation, WorksWithOtherPointTypes) {
   const auto cloud = test::toCloud<pcl::PointWithRange>(Points(boxCloud()->getMatrixXfMap(3, 4, 0)));
-  PRSTEstimation<pcl::PointWithRange> estimation;
-  estimation.setUseInputAxes(true);
-  estimation.setInputCloud(cloud);
-  pcl::PointCloud<PRSTSignature32768> output;
-  estimation.compute(output);
-  ASSERT_EQ(output.size(), 1u);
-  EXPECT_EQ(descriptorDistance(output[0], rawBox()), 0.0f);
+  EXPECT_EQ(descriptorDistance(describe<pcl::PointWithRange>(cloud, true).at(0), rawBox()), 0.0f);
 }
 
 TEST(PRSTEstimation, CloudsWithoutAnswerGiveAnEmptyOutputAndAWarningAndWrongParametersThrow) {

@@ -6,8 +6,6 @@
 
 #include "pcl/clouds.h"
 #include "registration/pose_graph.h"
-#include "shapes/scans.h"
-#include "shapes/shapes.h"
 
 namespace {
 

@@ -9,11 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "pcl/clouds.h"
 #include "pcl/kinds.h"
 #include "recognition/model_store.h"
 #include "recognition/sqlite_connection.h"
-#include "shapes/complaint.h"
 #include "shapes/temporary_folder.h"
 
 namespace pcl_symmetry {
@@ -175,7 +173,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesViewsWithTheirPosesAndWhatIsHiddenInPart)
     EXPECT_EQ(of_view[0].name, kind.name);
     const Eigen::Isometry3d error = of_view[0].T_model_scan * elsewhere();
     EXPECT_LT(error.translation().norm(), 0.05) << kind.name;
-    EXPECT_LT(Eigen::AngleAxisd(error.linear()).angle(), 0.05) << kind.name;
+    EXPECT_LT(angleOf(error.linear()), 0.05) << kind.name;
 
     const HalfHidden view(rodOnBox(kind.half, kind.rod, elsewhere(), 2), kViewpoint);
     EXPECT_LT(view.cluster.size(), 0.8 * static_cast<double>(view.num_alone)) << kind.name;
@@ -235,16 +233,13 @@ void addCopies(detail::ModelStore& source, const detail::StoredModel& model, con
   for (int i = 0; i < count; ++i) target.add({model.name + std::to_string(i), 0, {}, packed.num_points}, packed, 0, {});
 }
 
-/// The models of a file under \p count names each.
-void fillWithCopies(const std::string& from, const std::string& to, int count) {
-  detail::ModelStore source(from, 10.0, ""), target(to, 10.0, "");
-  for (const detail::StoredModel& model : source.models()) addCopies(source, model, model, count, target);
-}
-
 TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreCompared) {
   const DatabaseOptions options = withViews(8);
-  const std::string few = filled(options);
-  fillWithCopies(few, file_, 76);  // so many that pairs of points are not searched
+  {
+    detail::ModelStore source(filled(options), 10.0, ""), target(file_, 10.0, "");
+    // So many that pairs of points are not searched.
+    for (const detail::StoredModel& model : source.models()) addCopies(source, model, model, 76, target);
+  }
   RecognitionOptions recognition;
   recognition.num_candidates = 2;
   recognition.num_refined = 1;
@@ -266,9 +261,8 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
 
 TEST_F(SymmetryDatabaseTest, TriesMoreModelsWhereNoneOfTheFirstIsAccepted) {
   const DatabaseOptions options = withViews(8);
-  const std::string few = filled(options);
   {
-    detail::ModelStore source(few, 10.0, ""), target(file_, 10.0, "");
+    detail::ModelStore source(filled(options), 10.0, ""), target(file_, 10.0, "");
     const auto models = source.models();                  // beam, cube, plate, post
     addCopies(source, models[1], models[2], 30, target);  // cubes that look like the plate
     addCopies(source, models[2], models[2], 1, target);
@@ -318,7 +312,7 @@ TEST_F(SymmetryDatabaseTest, BuildsReportFailuresAndGoOnWhereTheyStopped) {
   std::atomic<int> num_loaded{0};
   for (const Kind& kind : kKinds)
     inputs.push_back({kind.name,
-                      [&] {
+                      [] {
                         return ModelSource{"here", "checksum of today", {}};
                       },
                       [&] {

@@ -13,7 +13,6 @@
 #include "core/base/random.h"
 #include "core/base/symmetric_solvers.h"
 #include "pcl/clouds.h"
-#include "shapes/scans.h"
 
 namespace {
 
@@ -37,7 +36,7 @@ CloudPtr<> chairModel() {
 }
 
 double angleOf(const Eigen::Matrix4f& transform) {
-  return Eigen::AngleAxisd(transform.topLeftCorner<3, 3>().cast<double>()).angle();
+  return test::angleOf(transform.topLeftCorner<3, 3>().cast<double>());
 }
 
 class SymmetryRegistrationTest : public testing::Test {
@@ -468,7 +467,7 @@ TEST(RegisterClouds, WhatOneScanShowsAloneDoesNotPull) {
     options.around = PoseNeighborhood{20.0 * kDegree, 1.0};
     const CloudRegistration found = registerClouds(from_left.cloud(), from_left.visibility(), from_right.cloud(),
                                                    from_right.visibility(), motion(10.0 * kDegree, 0.1), options);
-    return Eigen::AngleAxisd(found.T_target_source.linear()).angle() / kDegree;
+    return test::angleOf(found.T_target_source.linear()) / kDegree;
   };
   EXPECT_LT(degreesOff(true), 0.1);
   EXPECT_GT(degreesOff(false), 0.2);

@@ -7,7 +7,7 @@
 #include "pcl/clouds.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
-#include "shapes/scans.h"
+#include "shapes/found_planes.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -74,8 +74,7 @@ TEST(WithoutDepthErrors, IsWhatPartsOfAFrameDoThemselves) {
   auto own = ofBox(noisy, 1), shared = ofBox(withoutDepthErrors(noisy, SeenSpace(*noisy)), 1);
   const std::vector<SymmetryPlane> planes = own.compute(), of_filtered = shared.compute();
   EXPECT_LT(own.getUsedIndices().size(), twoBoxes().pixelsOf(1).size()) << "pixels that fly are left out";
-  ASSERT_EQ(planes.size(), of_filtered.size());
-  for (std::size_t i = 0; i < planes.size(); ++i) EXPECT_EQ(planes[i].coefficients(), of_filtered[i].coefficients());
+  test::expectSamePlanes(planes, of_filtered);
   own.setAsPublished(true);
   own.compute();
   EXPECT_EQ(own.getUsedIndices().size(), twoBoxes().pixelsOf(1).size()) << "the paper leaves them in";

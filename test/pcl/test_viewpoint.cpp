@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 #include <pcl/common/transforms.h>
 
-#include "core/base/random.h"
 #include "pcl/clouds.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "shapes/found_planes.h"
-#include "shapes/scans.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -31,33 +29,26 @@ Scan randomScan(std::uint64_t seed) {
   return test::scan(test::blockBox(), from, 6.0 * random.uniform());
 }
 
-void setOrigin(Cloud& cloud, const Eigen::Vector3d& origin) {
-  cloud.sensor_origin_ << origin.cast<float>(), 0.0f;
-}
-
 TEST(SeenByOrganizedCloud, TheRaysAreThoseOfItsCamera) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Scan scan = randomScan(seed);
     const auto seen = detail::seenByOrganizedCloud(*pictureOf(scan));
-    EXPECT_TRUE(seen) << seed;
-    if (!seen) continue;
+    ASSERT_TRUE(seen) << seed;
     const Visibility truth = scan.visibility();
     EXPECT_EQ(seen->width(), scan.width);
     RandomStream random(seed);
     int num_same = 0;
     constexpr int kTrials = 5000;
     for (int i = 0; i < kTrials; ++i) {
-      const Eigen::Vector3d x =
-          1.3 * Eigen::Vector3d(test::symmetric(random), test::symmetric(random), test::symmetric(random));
+      const Eigen::Vector3d x = 1.3 * test::randomPoint(random);
       num_same += (seen->depthBehind(x) < 0.0) == (truth.depthBehind(x) < 0.0) ? 1 : 0;
     }
     EXPECT_GT(num_same, 0.99 * kTrials) << seed << ": all but those at the borders of pixels";
-    for (Eigen::Index i = 0; i < scan.pixels.cols(); i += 7)
-      if (scan.pixels.col(i).allFinite()) {
-        ASSERT_NEAR(seen->depth(static_cast<int>(i % scan.width), static_cast<int>(i / scan.width)),
-                    truth.depth(static_cast<int>(i % scan.width), static_cast<int>(i / scan.width)), 0.02)
-            << seed;
-      }
+    for (int i = 0; i < scan.pixels.cols(); i += 7) {
+      const int u = i % scan.width, v = i / scan.width;
+      if (!scan.pixels.col(i).allFinite()) continue;
+      ASSERT_NEAR(seen->depth(u, v), truth.depth(u, v), 0.02) << seed;
+    }
   }
 }
 
@@ -124,8 +115,7 @@ int numTakenForFree(const SeenSpace& seen, const test::Table& table) {
   RandomStream random(1);
   int num_free = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Eigen::Vector3d unit(test::symmetric(random), test::symmetric(random), test::symmetric(random));
-    const Eigen::Vector3d x = box.center + 1.2 * box.half.cwiseProduct(unit);
+    const Eigen::Vector3d x = box.center + 1.2 * box.half.cwiseProduct(test::randomPoint(random));
     if (truth.depthBehind(x) > 0.1) num_free += seen.visibility()->depthBehind(x) < 0.0 ? 1 : 0;
   }
   return num_free;
@@ -134,7 +124,7 @@ int numTakenForFree(const SeenSpace& seen, const test::Table& table) {
 TEST(SeenSpace, IndicesNameAPartOfWhatTheScannerSaw) {
   const test::Table table;
   auto whole = toCloud(table.scan.cloud());
-  setOrigin(*whole, table.scan.viewpoint);
+  whole->sensor_origin_.head<3>() = table.scan.viewpoint.cast<float>();
   // The pixels of the box, counted among those that met something.
   auto indices = pcl::make_shared<pcl::Indices>();
   pcl::index_t at = 0;
@@ -142,8 +132,7 @@ TEST(SeenSpace, IndicesNameAPartOfWhatTheScannerSaw) {
     if (table.ids[i] == 1) indices->push_back(at);
     if (table.scan.pixels.col(static_cast<Eigen::Index>(i)).allFinite()) ++at;
   }
-  Cloud alone(*whole, *indices);
-  setOrigin(alone, table.scan.viewpoint);
+  const Cloud alone(*whole, *indices);  // with its origin
   const Points points = detail::selectPoints(alone, nullptr, alone.size(), 0).points;
   const SeenSpace before = detail::findSeenSpace(alone, points, Viewpoint{});
   const SeenSpace after = detail::findSeenSpace(*whole, points, Viewpoint{}, true);
@@ -160,8 +149,7 @@ TEST(SeenSpace, IndicesNameAPartOfWhatTheScannerSaw) {
   EXPECT_EQ(refinement.getViewpointSource(), ViewpointSource::Stored);
   refinement.setSeenSpace(std::make_shared<const SeenSpace>(*whole));
   const std::vector<SymmetryPlane> shared = refinement.compute();
-  ASSERT_EQ(own.size(), shared.size()) << "what is made once is what each analysis makes";
-  for (std::size_t i = 0; i < own.size(); ++i) EXPECT_EQ(own[i].coefficients(), shared[i].coefficients());
+  test::expectSamePlanes(own, shared);  // what is made once is what each analysis makes
 }
 
 TEST(SeenSpace, AScannerAtTheOriginOfItsSceneIsBelieved) {
