@@ -1,9 +1,7 @@
 #include "core/registration/pose_evidence.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "core/base/constants.h"
@@ -21,10 +19,8 @@ struct Residuals {
   double sum_squares = 0.0;
   int count = 0;
   Matrix6d hessian = Matrix6d::Zero();
-  /// Gain of the Hessian per squared radian of error of the mean normals.
+  /// Gain of the Hessian per squared radian of normal error.
   Matrix6d gain_of_noise = Matrix6d::Zero();
-  /// Sums of the gradient over cells of the scan: errors of neighboring points are correlated.
-  std::map<std::array<int, 3>, Vector6d> gradients;
   std::vector<double> sq_sines;  ///< between the normals of corresponding points
 };
 
@@ -35,10 +31,8 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
   for (Eigen::Index i = 0; i < landing.images.cols(); ++i) {
     if (landing.sq_distances[i] > reach * reach) continue;
     const int j = landing.closest[i];
-    const Eigen::Vector3d x = landing.images.col(i).cast<double>(), of_model = model.normals.col(j).cast<double>();
-    Eigen::Vector3d rotated = T_model_scan.linear() * scan.normals.col(scan.order[i]).cast<double>();
-    if (rotated.dot(of_model) < 0.0) rotated = -rotated;
-    const Eigen::Vector3d n = (of_model + rotated).normalized();
+    const Eigen::Vector3d x = landing.images.col(i).cast<double>(), n = model.normals.col(j).cast<double>();
+    const Eigen::Vector3d rotated = T_model_scan.linear() * scan.normals.col(scan.order[i]).cast<double>();
     Eigen::Matrix<double, WeightedProducts::kLast, 3> lever;
     lever << crossMatrix(x), Eigen::Matrix3d::Identity();
     const Vector6d row = lever * n;
@@ -46,29 +40,21 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
     residuals.hessian += row * row.transpose();
     // A normal has errors in the two directions perpendicular to it, with half of the squared error in each.
     residuals.gain_of_noise += 0.5 * lever * (Eigen::Matrix3d::Identity() - n * n.transpose()) * lever.transpose();
-    const Eigen::Array3i cell = (x.array() / kRegistration.correlated).floor().cast<int>();
-    residuals.gradients.try_emplace({cell[0], cell[1], cell[2]}, Vector6d::Zero()).first->second += distance * row;
     residuals.sum_squares += distance * distance;
-    residuals.sq_sines.push_back(of_model.cross(rotated).squaredNorm());
+    residuals.sq_sines.push_back(n.cross(rotated).squaredNorm());
     ++residuals.count;
   }
   return residuals;
 }
 
-/// The symmetric matrix without its negative eigenvalues.
-Matrix6d positivePart(const Matrix6d& matrix) {
-  const SymmetricEigen<Matrix6d> solver(matrix);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
-}
-
 /// The Hessian of the residuals without the part due to noise of the normals, which would constrain directions along
 /// which the surface slides on itself.
 Matrix6d hessianWithoutNoise(Residuals residuals) {
-  // The squares of errors in two directions have an exponential distribution; its mean is the median over log 2. The
-  // mean of two normals has a quarter of the variance of their difference; twice that, because large errors are more
-  // frequent.
-  const double sq_noise = 0.5 * median(std::move(residuals.sq_sines)) / std::log(2.0);
-  return positivePart(residuals.hessian - sq_noise * residuals.gain_of_noise);
+  // The squares of errors in two directions have an exponential distribution; its mean is the median over
+  // log 2.
+  const double sq_noise = median(std::move(residuals.sq_sines)) / std::log(2.0);
+  const SymmetricEigen<Matrix6d> solver(residuals.hessian - sq_noise * residuals.gain_of_noise);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
 }
 
 }  // namespace
@@ -82,16 +68,9 @@ Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, con
   information.diagonal().tail<3>().setConstant(1.0 / sq_way);
   Residuals residuals = residualsAt(scan, model, T_model_scan, num_points, reach);
   if (residuals.count > WeightedProducts::kLast) {
-    const double variance = std::max(kRegistration.min_deviation * kRegistration.min_deviation,
-                                     residuals.sum_squares / (residuals.count - WeightedProducts::kLast));
-    Matrix6d gradient_covariance = Matrix6d::Zero();
-    for (const auto& [cell, gradient] : residuals.gradients) gradient_covariance += gradient * gradient.transpose();
-    const auto num_cells = static_cast<double>(residuals.gradients.size());
-    gradient_covariance *= num_cells / std::max(1.0, num_cells - WeightedProducts::kLast) / (variance * variance);
-    const Matrix6d hessian = hessianWithoutNoise(std::move(residuals)) / variance;
-    // Independent errors give gradients of the covariance H, and the pose that of H^-1. Where gradients have more, C,
-    // the pose has H^-1 C H^-1 more; H (H + C)^-1 H, the inverse of the sum, also exists where H fixes no direction.
-    information += hessian * (information + hessian + positivePart(gradient_covariance - hessian)).inverse() * hessian;
+    const double variance = residuals.sum_squares / (residuals.count - WeightedProducts::kLast);
+    information += hessianWithoutNoise(std::move(residuals)) /
+                   std::max(kRegistration.min_deviation * kRegistration.min_deviation, variance);
   }
   return information.inverse();
 }

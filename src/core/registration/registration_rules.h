@@ -16,7 +16,6 @@ struct RegistrationRules {
   double relative_inertia = 1e-4;
   double inertia = 1e-6;        ///< constant added to the diagonal
   double min_deviation = 1e-7;  ///< least standard deviation of a residual, radii: the rounding of floats
-  double correlated = 0.5;      ///< edge of cells in which the residuals of a pose are correlated, radii
 
   // Merit of a pose
   float normal_share = 0.7f;  ///< share of a point's support that depends on its normal
