@@ -404,7 +404,6 @@ void attachHiddenParts(const SymmetryScene::Cloud& scene, const Eigen::Vector3d&
   for (pcl::Indices& cluster : clusters)
     (static_cast<int>(cluster.size()) >= min_points ? bodies : parts).push_back(std::move(cluster));
   clusters = bodies;
-  if (!scene.isOrganized()) return;
   std::vector<int> body_of(scene.size(), -1);
   std::vector<double> diagonals;
   for (std::size_t k = 0; k < bodies.size(); ++k) {

@@ -78,7 +78,7 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
 
 /// Appends small clusters to the body that hides where they are attached, and drops the others: seen from the side, the
 /// handle of a mug stands apart in the picture, because its ends are behind the body.
-/// \param scene where it is not organized, all small clusters are dropped.
+/// \param scene organized.
 /// \param min_points least number of points of a body. A smaller cluster belongs to the body that most of its pixels
 /// border, and lie behind by less than the body's diagonal.
 /// \param[in,out] clusters most points first.

@@ -285,9 +285,11 @@ SceneAnalysis SymmetryScene::compute() const {
     analysis.supports = detail::findSupports(frame, points, points, viewpoint, distances.plane);
   done("supports");
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, frame->size());
-  std::vector<pcl::Indices> clusters = detail::findClusters(
-      frame, rest, analysis.supports, distances, static_cast<int>(detail::kScene.hidden_part * options_.min_points));
-  if (viewpoint) detail::attachHiddenParts(*frame, *viewpoint, options_.min_points, clusters);
+  const bool has_picture = viewpoint && frame->isOrganized();
+  const double least_share = has_picture ? detail::kScene.hidden_part : 1.0;
+  std::vector<pcl::Indices> clusters = detail::findClusters(frame, rest, analysis.supports, distances,
+                                                            static_cast<int>(least_share * options_.min_points));
+  if (has_picture) detail::attachHiddenParts(*frame, *viewpoint, options_.min_points, clusters);
   const auto is_bulge = [&](const pcl::Indices& cluster) {
     return detail::isBulge(*frame, cluster, analysis.seen->visibility(), options_.detection.tolerance,
                            distances.cluster);
