@@ -59,8 +59,8 @@ struct FileReport {
 struct FileJob {
   std::string path;
   const Console& console;  ///< silent if there are several inputs
-  const CommonOptions&
-      common;  ///< the common flags; with one thread if there are several inputs, each of which has one
+  /// The common flags; with one thread if there are several inputs, each of which has one.
+  const CommonOptions& common;
   std::function<void(const FileReport&)> use = {};  ///< called with each report
   std::optional<FileReport> reported = {};
 

@@ -400,20 +400,21 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
 
 void attachHiddenParts(const SymmetryScene::Cloud& scene, const Eigen::Vector3d& viewpoint, int min_points,
                        std::vector<pcl::Indices>& clusters) {
-  std::vector<pcl::Indices> bodies, parts;
-  for (pcl::Indices& cluster : clusters)
-    (static_cast<int>(cluster.size()) >= min_points ? bodies : parts).push_back(std::move(cluster));
-  clusters = bodies;
+  const auto first_part = std::find_if(clusters.begin(), clusters.end(), [&](const pcl::Indices& cluster) {
+    return static_cast<int>(cluster.size()) < min_points;
+  });
+  const std::vector<pcl::Indices> parts(first_part, clusters.end());
+  clusters.erase(first_part, clusters.end());
   std::vector<int> body_of(scene.size(), -1);
   std::vector<double> diagonals;
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    for (const pcl::index_t i : bodies[k]) body_of[i] = static_cast<int>(k);
-    diagonals.push_back(boxDiagonal(pointsOf(scene, bodies[k])));
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    for (const pcl::index_t i : clusters[k]) body_of[i] = static_cast<int>(k);
+    diagonals.push_back(boxDiagonal(pointsOf(scene, clusters[k])));
   }
   const auto rangeOf = [&](int i) { return (scene[i].getVector3fMap().cast<double>() - viewpoint).norm(); };
   const int width = static_cast<int>(scene.width), height = static_cast<int>(scene.height);
   for (const pcl::Indices& part : parts) {
-    std::vector<int> num_hiding(bodies.size() + 1, 0);  // pairs of pixels; the last is for no body
+    std::vector<int> num_hiding(clusters.size() + 1, 0);  // pairs of pixels; the last is for no body
     for (const pcl::index_t i : part)
       for (int v = std::max(0, i / width - kScene.hidden_border);
            v <= std::min(height - 1, i / width + kScene.hidden_border); ++v)

@@ -26,8 +26,7 @@ void changeConfidence(SymmetryPlane& plane, double confidence, const char* rule,
 void multiplyOdds(SymmetryPlane& plane, double odds, const char* rule, const DetectionOptions& options);
 
 /// A reason of limitToPossible().
-inline constexpr const char* kPartOffRoundBody =
-    "does not map onto itself the part of a round body that is not round";
+inline constexpr const char* kPartOffRoundBody = "does not map onto itself the part of a round body that is not round";
 
 /// Limits the plane to a possible symmetry from now on, whatever its confidence.
 void limitToPossible(SymmetryPlane& plane, const char* rule);
